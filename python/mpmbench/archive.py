@@ -2,11 +2,13 @@
 
 import functools
 import html
+import io
 import os
 import pathlib
 
 from . import words
-from .program import run as run_program
+from .methods import Broker, method, split
+from .program import run as run_program, temporary
 from .results import Comparison, Repair, rate_table
 from .signals import SIGNALS, Loop
 
@@ -77,7 +79,6 @@ class Archive:
     @functools.cached_property
     def context(self):
         """What a method may know besides the loop: model, controller, benchmark (docs/bring_your_own.md)."""
-        from .methods import method
         found = []
 
         @method
@@ -112,7 +113,6 @@ class Archive:
                     if name in group.variables}
 
     def _simulated(self, index):
-        import io
         import pandas
         text = run_program(["export", self.path, "--table", "loops", "--index", index], quiet=True)
         table = pandas.read_csv(io.StringIO(text), float_precision="round_trip")
@@ -127,8 +127,6 @@ class Archive:
     def compare(self, *own, methods=None, output=None, quiet=False, **options):
         """The loops of the archive under further methods, `own` or names; beside those of the archive, or beside
         `methods`. `output`: an archive to write with all of them. `options`: those of `mpmbench compare`."""
-        from .commands import split, temporary
-        from .methods import Broker
         names, functions = split([*(self.methods if methods is None else methods), *own])
         # The functions take the place of earlier answers under their names.
         names = list(dict.fromkeys(names))

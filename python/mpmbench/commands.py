@@ -1,41 +1,20 @@
 """The commands of the program as functions."""
 
-import atexit
 import os
 import pathlib
 import shutil
-import tempfile
 
 from . import words
 from .archive import Archive
-from .methods import Broker, Method, method
-from .program import Error, run as run_program
+from .methods import Broker, method, split
+from .program import Error, run as run_program, temporary
 from .results import Assessment, Board
-
-
-def temporary(name):
-    """A path of this name in a folder that is removed when Python ends."""
-    folder = tempfile.mkdtemp(prefix="mpmbench-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return pathlib.Path(folder) / name
 
 
 def study_words(study):
     """The word for a study, and what goes to stdin: the text of a study has more than one line."""
     text = os.fspath(study)
     return ("-", text) if "\n" in text else (text, None)
-
-
-def split(methods):
-    """Names of methods, and methods of this process."""
-    if isinstance(methods, (str, Method)):
-        methods = [methods]
-    methods = list(methods or [])
-    own = [each for each in methods if isinstance(each, Method)]
-    for each in methods:
-        if not isinstance(each, (str, Method)):
-            raise TypeError(f"methods: found {each!r}; allowed: names, and functions with @mpmbench.method")
-    return [each if isinstance(each, str) else each.name for each in methods], own
 
 
 def command(name, *arguments, text=None, quiet=True, **options):
@@ -87,7 +66,7 @@ def suite(suite, *own, output=None, methods=None, quiet=False, **options):
     with Broker(own) as broker:
         said = run_program(["suite", suite, "-o", output, "--json", *words.options({"methods": names or None, **options}),
                             *broker.words()], broker=broker, quiet=quiet)
-        return Board(said, output, [each.name for each in own], broker.seconds)
+        return Board(said, output, [each.name for each in own], broker.seconds, Archive)
 
 
 def board(suite, **options):
@@ -109,7 +88,7 @@ def assess(study, record, *, page=None, quiet=False, **options):
         record = path
     page = pathlib.Path(page) if page is not None else temporary("assessment.html")
     said = run_program(["assess", study, record, "--json", "-o", page, *words.options(options)], quiet=quiet)
-    return Assessment(said, page, study)
+    return Assessment(said, page, lambda: context(study))
 
 
 def write_record(frame, path):

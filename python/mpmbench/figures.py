@@ -41,12 +41,11 @@ def loop(loop):
     return figure
 
 
-def board(rated, rates=None, highlight=()):
-    """Dots with whiskers: a row a method, a panel a rate."""
-    from .results import SHOWN
+def board(rated, headings, rates=None, highlight=()):
+    """Dots with whiskers: a row a method, a panel a rate; those with a heading unless told."""
     found = rated.intervals
     if rates is None:
-        rates = [name for name in SHOWN if name != "answered" and name in found.index.get_level_values("rate")
+        rates = [name for name in headings if name != "answered" and name in found.index.get_level_values("rate")
                  and found.xs(name, level="rate")["value"].notna().any()]
         if "power_05_impact" in rates:
             rates.remove("detected_impact")
@@ -65,7 +64,7 @@ def board(rated, rates=None, highlight=()):
         axis.set_xticks([0, 50, 100])
         axis.grid(axis="both", color="#e3e6ea", linewidth=0.7)
         axis.set_axisbelow(True)
-        axis.set_title(SHOWN.get(rate, rate).replace(" at ", "\nat "), fontsize=9)
+        axis.set_title(headings.get(rate, rate).replace(" at ", "\nat "), fontsize=9)
         axis.set_xlabel("% of loops", fontsize=8)
     axes[0, 0].set_yticks(range(len(methods)), methods, fontsize=8)
     for label in axes[0, 0].get_yticklabels():

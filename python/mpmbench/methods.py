@@ -69,8 +69,24 @@ class Method:
                                                       [scope] if isinstance(scope, str) else scope))}
                             for name, scope in self.numbers.items()]}
 
+    def told_apart_by(self):
+        """What identity.digest() looks into."""
+        return self.function, self.learn, self.options
+
     def __repr__(self):
         return f"<mpmbench.Method {self.name}: {self.verdict}>"
+
+
+def split(methods):
+    """Names of methods, and methods of this process."""
+    if isinstance(methods, (str, Method)):
+        methods = [methods]
+    methods = list(methods or [])
+    own = [each for each in methods if isinstance(each, Method)]
+    for each in methods:
+        if not isinstance(each, (str, Method)):
+            raise TypeError(f"methods: found {each!r}; allowed: names, and functions with @mpmbench.method")
+    return [each if isinstance(each, str) else each.name for each in methods], own
 
 
 class Session:

@@ -1,5 +1,6 @@
 """The program mpmbench: where it is, how it is run, and what goes wrong."""
 
+import atexit
 import os
 import pathlib
 import re
@@ -8,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import warnings
 
 from .progress import watcher
@@ -140,3 +142,8 @@ def message(text):
     return re.sub(r"^mpmbench: ", "", "\n".join(lines[first:])) or "the program mpmbench ended without a message"
 
 
+def temporary(name):
+    """A path of this name in a folder that is removed when Python ends."""
+    folder = tempfile.mkdtemp(prefix="mpmbench-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return pathlib.Path(folder) / name

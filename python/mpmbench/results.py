@@ -5,6 +5,8 @@ import html
 import json
 import statistics
 
+from . import figures
+
 # In the order of the table: name, heading.
 SHOWN = {"answered": "answers", "false_alarm_healthy": "false alarms", "detected_impact": "impact found",
          "power_05_impact": "impact found at 5 % false alarms", "located": "right CV", "source_all": "right source"}
@@ -69,8 +71,7 @@ class Rated:
     def plot(self, rates=None, highlight=None):
         """Rates of all methods with their intervals, as a figure of matplotlib; `highlight`: names, own methods unless
         told."""
-        from . import figures
-        return figures.board(self, rates, self.own if highlight is None else highlight)
+        return figures.board(self, SHOWN, rates, self.own if highlight is None else highlight)
 
     def _repr_html_(self):
         return rate_table({method["name"]: self._of(method) for method in self.json["methods"]}, self.methods, self.own)
@@ -107,7 +108,6 @@ class Comparison(Rated):
 
     def plot_roc(self, truth="impact", highlight=None):
         """ROC curves of all methods, as a figure of matplotlib."""
-        from . import figures
         return figures.roc(self, truth, self.own if highlight is None else highlight)
 
     def __repr__(self):
@@ -115,11 +115,12 @@ class Comparison(Rated):
 
 
 class Board(Rated):
-    """The leaderboard of a suite. `folder` has its archives and its page, leaderboard.html; None for a finished board."""
+    """The leaderboard of a suite. `folder` has its archives, which `opened` opens, and its page, leaderboard.html; None
+    for a finished board."""
 
-    def __init__(self, text, folder=None, own=(), seconds=None):
+    def __init__(self, text, folder=None, own=(), seconds=None, opened=None):
         super().__init__(text, own, seconds or {})
-        self.folder, self.page = folder, folder and folder / "leaderboard.html"
+        self._opened, self.folder, self.page = opened, folder, folder and folder / "leaderboard.html"
 
     def _of(self, method):
         return method["all"]["rates"]
@@ -136,10 +137,9 @@ class Board(Rated):
 
     def archive(self, plant, family):
         """The archive of a cell."""
-        from .archive import Archive
         if self.folder is None:
             raise ValueError("a finished board has no archives: run the suite, mpmbench.suite(...)")
-        return Archive(self.folder / f"{plant}.{family}.h5")
+        return self._opened(self.folder / f"{plant}.{family}.h5")
 
     def standing(self, method):
         """Where a method of one's own, or one that is highlighted, stands among the others, paired on the same loops: a
@@ -162,10 +162,10 @@ class Board(Rated):
 
 class Assessment:
     """The verdict on a record. `found` is a word of docs/own_records.md, `verdict` the sentences, `json` all that the
-    program says, `page` the page."""
+    program says, `page` the page. `context()` is that of the study."""
 
-    def __init__(self, text, page, study):
-        self.json, self.page, self._study = json.loads(text), page, study
+    def __init__(self, text, page, context):
+        self.json, self.page, self._context = json.loads(text), page, context
         self.found, self.verdict = self.json["found"], self.json["verdict"]
 
     def __str__(self):
@@ -176,8 +176,7 @@ class Assessment:
         """The channel that the verdict names, corrected; None where it names none."""
         if self.json.get("repair") is None:
             return None
-        from .commands import context
-        return Repair(json.dumps(self.json["repair"]), context(self._study))
+        return Repair(json.dumps(self.json["repair"]), self._context())
 
     def _repr_html_(self):
         first, *others = map(html.escape, self.verdict)
@@ -201,7 +200,6 @@ class Repair:
 
     def plot(self):
         """Step responses of the channel, old and new, as a figure of matplotlib."""
-        from . import figures
         return figures.steps(self)
 
     def __repr__(self):

@@ -4,6 +4,8 @@ import functools
 
 import numpy
 
+from . import figures
+
 SIGNALS = {"y": "cvs", "u": "mvs", "u_target": "mvs", "d": "mds", "y_sim": "cvs", "y_set": "cvs", "candidates": None}
 
 
@@ -93,7 +95,6 @@ class Loop:
 
     def plot(self):
         """y, u and the model of the loop as a figure of matplotlib."""
-        from . import figures
         return figures.loop(self)
 
     def __repr__(self):
