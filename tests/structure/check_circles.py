@@ -1,4 +1,4 @@
-"""Checks that nothing goes round in a circle: a header with its source, the folders of the methods, the Python package.
+"""Checks that nothing goes round in a circle: headers with their sources, the modules of the Python package.
 
 A header and its source are one unit, so that a source that includes what includes its header is a circle too. In the
 Python package an import that is hidden in a function, to break a circle, counts as any other.
@@ -8,6 +8,10 @@ import ast
 
 import check_includes
 import tree
+
+# Circles that stay for now, and why.
+EXCEPTIONS = {("analysis/findings/loop_outcome", "analysis/findings/method_rates"):
+              "each rate of outcomes is a member of MethodRates, and MethodRates has a letter for each outcome"}
 
 
 def unit(path):
@@ -79,13 +83,14 @@ def circles(graph):
 
 
 def check(root):
-    modules, complaints = import_graph(root)
-    for graph in include_graph(root), modules:
-        for members in circles(graph):
-            node = min(members)
-            other = next(name for name in graph[node] if name in members)
-            complaints.append(f"{graph[node][other]}: a circle of {', '.join(sorted(members))}")
-    return complaints
+    files, (modules, complaints) = include_graph(root), import_graph(root)
+    found = {tuple(sorted(members)): graph for graph in (files, modules) for members in circles(graph)}
+    for members, graph in found.items():
+        if members not in EXCEPTIONS:
+            where = next(where for name, where in graph[members[0]].items() if name in members)
+            complaints.append(f"{where}: a circle of {', '.join(members)}")
+    return complaints + [f"{members[0]}: no circle any more, but among the EXCEPTIONS of check_circles.py"
+                         for members in EXCEPTIONS if members not in found and set(members) <= files.keys()]
 
 
 if __name__ == "__main__":

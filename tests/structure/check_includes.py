@@ -60,11 +60,12 @@ def folder_complaint(relative, name):
         places = [parts[depth] if len(parts) > depth + 1 or not own_is_file else "" for parts in (relative.parts, target)]
         if len(relative.parts) == depth + 1 and not own_is_file:
             continue
-        for place in places:
+        own, included = (f"{above}/{place}".rstrip("/") for place in places)
+        for place, folder in zip(places, (own, included)):
             if place not in order:
-                return f"{above}/{place} is no folder of tree.FOLDERS"
+                return f"{folder} is no folder of tree.FOLDERS"
         if order.index(places[1]) > order.index(places[0]):
-            return f'{above}/{places[0]} must not include {above}/{places[1]}: "{name}"'
+            return f'{own} must not include {included}: "{name}"'
     return None
 
 

@@ -7,9 +7,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import check_circles
 import check_format
 import check_hygiene
 import check_includes
+import check_link_order
 import check_links
 import check_paths
 import check_tidy
@@ -128,11 +130,10 @@ class Includes(CheckerTest):
     def test_each_folder_refuses_the_next_one(self):
         for room, folders in check_includes.tree.FOLDERS.items():
             for left, right in zip(folders, folders[1:]):
-                self.assert_one(check_includes, {f"{room}/{left}/a.cpp": f'#include "{room}/{right}/b.hpp"\n',
-                                                 f"{room}/{right}/b.hpp": HEADER},
-                                f"{room}/{left}/a.cpp:1:", f"{room}/{left} must not include {room}/{right}")
-                self.assert_clean(check_includes, {f"{room}/{right}/a.cpp": f'#include "{room}/{left}/b.hpp"\n',
-                                                   f"{room}/{left}/b.hpp": HEADER})
+                left, right = (f"{room}/{folder}".rstrip("/") for folder in (left, right))  # "": the folder itself
+                self.assert_one(check_includes, {f"{left}/a.cpp": f'#include "{right}/b.hpp"\n', f"{right}/b.hpp": HEADER},
+                                f"{left}/a.cpp:1:", f"{left} must not include {right}")
+                self.assert_clean(check_includes, {f"{right}/a.cpp": f'#include "{left}/b.hpp"\n', f"{left}/b.hpp": HEADER})
 
     def test_a_folder_without_a_place_in_the_order_is_refused(self):
         self.assert_one(check_includes, {"results/odd/a.cpp": '#include "results/odd/b.hpp"\n',
@@ -191,6 +192,63 @@ class Includes(CheckerTest):
 
     def test_the_build_tree_is_not_looked_at(self):
         self.assert_clean(check_includes, {"build/release/x.cpp": '#include "a.hpp"\n'})
+
+
+class Circles(CheckerTest):
+    CHAIN = {"plants/a.hpp": '#include "plants/b.hpp"\n', "plants/b.hpp": HEADER, "plants/c.cpp": '#include "plants/a.hpp"\n'}
+
+    def test_a_header_and_its_source_are_one(self):
+        self.assert_clean(check_circles, self.CHAIN)
+        self.assert_clean(check_circles, self.CHAIN | {"plants/a.cpp": '#include "plants/a.hpp"\n'})
+        self.assert_one(check_circles, self.CHAIN | {"plants/b.cpp": '#include "plants/b.hpp"\n#include "plants/a.hpp"\n'},
+                        "plants/a.hpp:1:", "a circle of plants/a, plants/b")
+
+    def test_a_circle_of_more_than_two(self):
+        self.assert_one(check_circles, self.CHAIN | {"plants/b.hpp": '#include "plants/c.hpp"\n',
+                                                     "plants/c.hpp": '#include "plants/a.hpp"\n'},
+                        "plants/a.hpp:1:", "a circle of plants/a, plants/b, plants/c")
+
+    def test_an_exception_goes_with_its_circle(self):
+        (left, right), = check_circles.EXCEPTIONS
+        files = {f"{left}.hpp": f'#include "{right}.hpp"\n', f"{right}.hpp": HEADER}
+        self.assert_clean(check_circles, files | {f"{right}.cpp": f'#include "{left}.hpp"\n'})
+        self.assert_one(check_circles, files, f"{left}:", "no circle any more")
+
+    def test_modules_of_the_package(self):
+        modules = {"python/mpmbench/a.py": "from . import b\n", "python/mpmbench/b.py": "import json\n"}
+        self.assert_clean(check_circles, modules)
+        self.assert_one(check_circles, modules | {"python/mpmbench/b.py": "from .a import name\n"},
+                        "python/mpmbench/a.py:1:", "a circle of a, b")
+
+    def test_a_function_hides_no_import(self):
+        self.assert_one(check_circles, {"python/mpmbench/a.py": "def f():\n    from .b import name\n"},
+                        "python/mpmbench/a.py:2:", "the import of b is hidden in a function")
+        self.assert_one(check_circles, {"python/mpmbench/a.py": "class A:\n    import mpmbench.b\n"},
+                        "python/mpmbench/a.py:2:", "the import of b is hidden in a function")
+        self.assert_clean(check_circles, {"python/mpmbench/a.py": "def f():\n    import pandas\n"})
+
+
+class LinkOrder(unittest.TestCase):
+    def complaints(self, sources):
+        """Of a build in which every room has one object: source text by room, nothing in the others."""
+        with Tree({f"{room}/source.cpp": sources.get(room, "") for room in check_link_order.tree.ROOMS}) as build:
+            for room in check_link_order.tree.ROOMS:
+                subprocess.run([os.environ["CXX"], "-c", build / room / "source.cpp", "-o", build / room / f"libmpm_{room}.a"],
+                               check=True)
+            return check_link_order.check(build)
+
+    def test_a_room_takes_from_its_left_alone(self):
+        needs, defines = "void f(int);\nvoid g() { f(1); }\n", "void f(int) {}\n"
+        self.assertEqual(self.complaints({"plants": defines, "solvers": needs}), [])
+        self.assertEqual(self.complaints({"plants": needs, "solvers": defines}), ["plants: needs f(int), which solvers defines"])
+
+    def test_what_a_room_has_itself_may_be_elsewhere_too(self):
+        inline = "inline void f(int) {}\nvoid %s() { f(1); }\n"
+        self.assertEqual(self.complaints({"plants": inline % "g", "solvers": inline % "h"}), [])
+
+    def test_a_build_without_libraries_is_no_proof(self):
+        with Tree({}) as build:
+            self.assertEqual(len(check_link_order.check(build)), len(check_link_order.tree.ROOMS))
 
 
 class UsedNames(CheckerTest):
