@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "analysis/methods/assessment_record.hpp"
+#include "analysis/methods/method_table.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/candidates.hpp"
 #include "scenarios/loop/historian.hpp"
@@ -78,6 +80,12 @@ PlantRecord trial_record(const TrialFrame& frame, const ExperimentDraw& draw, co
   hold_unknown(unknown, record.u);
   hold_unknown(unknown, record.d);
   return record;
+}
+
+void answer(ExperimentRecord& record, const Study& study, const LoopAssessor& assess) {
+  record.assessments = record.status == ExperimentStatus::ok
+                           ? assess(record)
+                           : unassessed(assessment_forms(study, study_methods(study)));
 }
 
 LoopAssessor trial_assessor(const std::shared_ptr<const RecordFrame>& judged,

@@ -35,6 +35,10 @@ PlantRecord trial_record(const TrialFrame& frame, const ExperimentDraw& draw, co
 /// What the methods say of an experiment that ran to its end, whose loop is kept.
 using LoopAssessor = std::function<std::vector<AssessmentRecord>(const ExperimentRecord& record)>;
 
+/// Puts the answers into the record of an experiment of `study`, which keeps its loop. One that did not run
+/// to its end is not assessed.
+void answer(ExperimentRecord& record, const Study& study, const LoopAssessor& assess);
+
 /// Judges trial_record() of each experiment as the record of the plant is judged. Each thread needs its own.
 LoopAssessor trial_assessor(const std::shared_ptr<const RecordFrame>& judged,
                             const std::shared_ptr<const TrialFrame>& made);

@@ -13,6 +13,7 @@
 #include "analysis/reproduction/seeded_reproduction.hpp"
 #include "analysis/study_files/resolved_study.hpp"
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "bench/campaign/loop_farm.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/files/outside_files.hpp"

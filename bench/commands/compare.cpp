@@ -15,6 +15,7 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "base/system/temporary_folder.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"

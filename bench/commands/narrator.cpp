@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/study_files/resolved_study.hpp"
+#include "base/sha256.hpp"
 #include "bench/commands/dry_run.hpp"
 #include "bench/files/outside_files.hpp"
 

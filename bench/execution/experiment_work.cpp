@@ -7,6 +7,7 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
+#include "analysis/records/trial_record.hpp"
 #include "base/system/thread_clock.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "solvers/qp_solver_factory.hpp"
@@ -26,22 +27,17 @@ ExperimentOutcome ExperimentWork::run(std::int64_t index) {
     AuditSampler sampler(study_.seed, index, audited_share(study_, options_));
     outcome.record = runner_.run(index, assessor_ ? StorePolicy::all : options_.store,
                                  [&](const Controller& controller) { sampler.observe(controller); });
-    if (assessor_)
-      assess(outcome.record);
+    if (assessor_) {
+      answer(outcome.record, study_, assessor_);
+      if (options_.store == StorePolicy::none)
+        outcome.record.loop.reset();
+    }
     outcome.samples = sampler.take();
   } catch (const std::exception& error) {
     outcome = {};
     outcome.record = lost_record(study_, index, error.what());
   }
   return outcome;
-}
-
-void ExperimentWork::assess(ExperimentRecord& record) const {
-  record.assessments = record.status == ExperimentStatus::ok
-                           ? assessor_(record)
-                           : unassessed(assessment_forms(study_, study_methods(study_)));
-  if (options_.store == StorePolicy::none)
-    record.loop.reset();
 }
 
 void ExperimentWork::audit(ExperimentOutcome& outcome) {

@@ -26,9 +26,6 @@ class ExperimentWork {
   void audit(ExperimentOutcome& outcome);
 
  private:
-  /// Assesses an experiment of which the loop was kept.
-  void assess(ExperimentRecord& record) const;
-
   const Study& study_;
   const RunOptions& options_;
   ExperimentRunner runner_;

@@ -1,38 +1,16 @@
 #include "bench/files/outside_files.hpp"
 
 #include <cstddef>
-#include <fstream>
-#include <span>
+#include <filesystem>
 #include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "results/files/sha256.hpp"
+#include "base/sha256.hpp"
 
 namespace mpm {
-namespace {
-
-constexpr std::size_t kDigits = 16;  // enough against accidents, and short enough for a message
-
-}  // namespace
-
-std::string digest_of(std::string_view content) {
-  return sha256(std::as_bytes(std::span(content))).substr(0, kDigits);
-}
-
-// In pieces: an archive with its loops may be longer than the memory.
-std::string digest_of_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> piece(std::size_t{1} << 16);
-  Sha256 hash;
-  do {
-    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    hash.add(std::as_bytes(std::span(piece).first(static_cast<std::size_t>(file.gcount()))));
-  } while (file);
-  return hash.digits().substr(0, kDigits);
-}
 
 std::string command_identity(const std::vector<std::string>& command) {
   std::vector<std::string> files;

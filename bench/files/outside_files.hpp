@@ -1,20 +1,14 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "scenarios/study/study.hpp"
 
 // What decides on a result and stands in no study file: programs and FMUs of somebody else, by the content of
-// their files. A digest is the first 16 digits of the SHA-256.
+// their files.
 
 namespace mpm {
-
-std::string digest_of(std::string_view content);
-/// Of a file that cannot be read: that of nothing.
-std::string digest_of_file(const std::filesystem::path& path);
 
 /// "python3 -B mine.py (mine.py 0123456789abcdef)": a command, and a digest of each of its words that is a
 /// file in the current folder or a path from there. The program itself counts when it is a path: one that is

@@ -12,6 +12,7 @@
 
 #include "analysis/study_files/study_file.hpp"
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "base/system/input_file.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"

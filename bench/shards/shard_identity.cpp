@@ -10,6 +10,7 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/version.hpp"
 

@@ -1,3 +1,5 @@
+#include "results/assess/assessment_document.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,7 +12,7 @@
 #include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/settling_time.hpp"
-#include "results/assess/record_assessment.hpp"
+#include "results/assess/assessment_sentences.hpp"
 #include "results/assess/repair_form.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"

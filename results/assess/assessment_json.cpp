@@ -1,10 +1,12 @@
+#include "results/assess/assessment_json.hpp"
+
 #include <cmath>
 #include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include "analysis/experiment/judgement.hpp"
-#include "results/assess/record_assessment.hpp"
+#include "results/assess/assessment_sentences.hpp"
 #include "results/assess/repair_form.hpp"
 #include "results/text/experiment_text.hpp"
 #include "results/text/number_json.hpp"

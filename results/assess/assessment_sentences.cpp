@@ -1,3 +1,5 @@
+#include "results/assess/assessment_sentences.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -6,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include "analysis/experiment/judgement.hpp"
-#include "results/assess/record_assessment.hpp"
 #include "results/assess/repair_form.hpp"
 #include "results/text/experiment_heading.hpp"
 #include "results/text/experiment_text.hpp"
@@ -380,20 +381,6 @@ std::string window_text(const RecordAssessment& assessment, int window) {
   return fmt::format("{} to {}", stamp(monitoring.begin(window)), stamp(monitoring.end(window) - 1));
 }
 
-RecordAnswers RecordAssessment::answers_of(std::size_t method) const {
-  return {.said = said[method],
-          .trial_of_said = trial_of(method),
-          .model = model,
-          .trial_of_model = trial ? &trial->model : nullptr,
-          .allows_errors = model_error > 0.0};
-}
-
-Eigen::Index worst_cv(const RecordAssessment& of) {
-  if (of.found() == RecordVerdict::fault && of.verdict().predicted_cv >= 0)
-    return of.verdict().predicted_cv;
-  return std::max<Eigen::Index>(0, of.model.predicted_cv);
-}
-
 std::vector<std::string> controller_sentences(const RecordAssessment& of) {
   const ControllerCheck& check = of.controller;
   if (check.is_alike())
@@ -422,21 +409,6 @@ std::string source_words(const Study& study, const AssessmentRecord& said, Fault
 
 std::vector<std::string> worsened_by_repair(const RecordAssessment& of) {
   return worsened_cvs(of.study, of.repair->now, of.repair->predicted, of.named_prospect());
-}
-
-const RepairProspect* RecordAssessment::named_prospect() const {
-  return repair ? prospect_of(prospects, repair->repair.channel) : nullptr;
-}
-
-std::optional<FaultOdds> RecordAssessment::fault_odds() const {
-  if (!odds.answered())
-    return std::nullopt;
-  const FaultOdds of{odds.number("p_mpm"), odds.number("p_ud"), odds.number("p_both"),
-                     odds.number("p_other")};
-  const double fault = of.mpm + of.ud + of.mpm_ud + of.other;
-  if (!(fault > 0.0))
-    return std::nullopt;
-  return FaultOdds{of.mpm / fault, of.ud / fault, of.mpm_ud / fault, of.other / fault};
 }
 
 AssessmentText verdict_text(const RecordAssessment& of) {

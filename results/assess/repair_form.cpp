@@ -91,13 +91,6 @@ std::vector<std::string> worsened_cvs(const Study& study, const Eigen::VectorXd&
   return worse;
 }
 
-const RepairProspect* prospect_of(const std::vector<RepairProspect>& prospects, const Channel& channel) {
-  for (const RepairProspect& prospect : prospects)
-    if (prospect.repair.channel == channel && !prospect.gains.empty())
-      return &prospect;
-  return nullptr;
-}
-
 std::string information_sentence(const Study& study, const Channel& channel, const ChannelInformation& told) {
   constexpr double kActAlike = 1000.0;  // condition: a column is known from the others to 3 %
   const std::string name = channel_name(study, channel);

@@ -28,9 +28,6 @@ std::vector<std::string> worsened_cvs(const Study& study, const RepairProspect& 
 /// prospect of the same repair; null: it has none.
 std::vector<std::string> worsened_cvs(const Study& study, const Eigen::VectorXd& now,
                                       const Eigen::VectorXd& then, const RepairProspect* prospect);
-/// The prospect of this channel; null where it ran on no plant.
-const RepairProspect* prospect_of(const std::vector<RepairProspect>& prospects, const Channel& channel);
-
 /// What the excitation tells of a channel, and what it does not.
 std::string information_sentence(const Study& study, const Channel& channel, const ChannelInformation& told);
 

@@ -14,12 +14,12 @@
 #include "analysis/methods/method_messages.hpp"
 #include "base/non_finite.hpp"
 #include "base/row_major.hpp"
+#include "base/sha256.hpp"
 #include "results/archive/dimensions.hpp"
 #include "results/archive/matrix_io.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/csv_text.hpp"
 #include "results/files/file_seal.hpp"
-#include "results/files/sha256.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {

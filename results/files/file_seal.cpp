@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/sha256.hpp"
 #include "results/files/archive_error.hpp"
-#include "results/files/sha256.hpp"
 
 namespace mpm {
 namespace {

@@ -18,9 +18,9 @@
 #include "analysis/statistics/clustered_rate.hpp"
 #include "analysis/study_files/resolved_study.hpp"
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "base/system/foreign_text.hpp"
 #include "results/files/foreign_content.hpp"
-#include "results/files/sha256.hpp"
 #include "results/files/utf8.hpp"
 
 namespace mpm {

@@ -4,6 +4,7 @@ Python package, the folder of +mpmbench, and a project outside the tree that bui
 usage: check_install.py CMAKE BUILD SOURCES
 """
 
+import json
 import os
 import pathlib
 import shutil
@@ -79,6 +80,18 @@ def check_embedding(cmake, prefix, sources, folder):
     run(cmake, "--build", folder / "build")
     said = run(folder / "build/one_experiment").splitlines()
     assert said and all(line.split(": ")[1] in ("flagged", "healthy") for line in said), said
+    check_assess(folder / "build/assess_record", prefix, folder)
+
+
+def check_assess(example, prefix, folder):
+    """A program says of a record what the command says of it, simulated records included."""
+    program, study = prefix / "bin/mpmbench", prefix / "share/mpmbench/studies/wood-berry.toml"
+    archive, record = folder / "loops.h5", folder / "record.csv"
+    run(program, "run", study, "-o", archive, "--experiments", "2", "--store", "all", "--quiet")
+    run(program, "export", archive, "--table", "loops", "--index", "1", "-o", record)
+    said = run(example, study, record).splitlines()
+    answer = json.loads(run(program, "assess", study, record, "--trials", "20", "--json", "--quiet"))
+    assert said == answer["verdict"], (said, answer["verdict"])
 
 
 def main():

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/sha256.hpp"
 #include "bench/files/outside_files.hpp"
 
 namespace {

@@ -191,4 +191,11 @@ std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects) {
   return prospects;
 }
 
+const RepairProspect* prospect_of(const std::vector<RepairProspect>& prospects, const Channel& channel) {
+  for (const RepairProspect& prospect : prospects)
+    if (prospect.repair.channel == channel && !prospect.gains.empty())
+      return &prospect;
+  return nullptr;
+}
+
 }  // namespace mpm

@@ -90,4 +90,7 @@ class RepairProspects {
 /// By expected gain, the largest first; those that run on no plant last.
 std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects);
 
+/// The prospect of this channel; null where it ran on no plant.
+const RepairProspect* prospect_of(const std::vector<RepairProspect>& prospects, const Channel& channel);
+
 }  // namespace mpm

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace mpm {
 
@@ -21,5 +23,10 @@ class Sha256 {
  private:
   std::shared_ptr<void> state_;
 };
+
+/// The first 16 digits of the SHA-256, by which people compare contents.
+std::string digest_of(std::string_view content);
+/// Of a file that cannot be read: that of nothing.
+std::string digest_of_file(const std::filesystem::path& path);
 
 }  // namespace mpm

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "analysis/experiment/record_range.hpp"
 #include "analysis/experiment/repair.hpp"
 #include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/assessed_loop.hpp"
@@ -14,9 +18,13 @@
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/controller_check.hpp"
 #include "analysis/records/record_verdict.hpp"
-#include "results/document/document.hpp"
+#include "analysis/records/trial_record.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
+#include "solvers/qp_solver.hpp"
+
+// A record of a plant under the study of its controller: what the methods say of it, and how far to trust
+// them.
 
 namespace mpm {
 
@@ -70,47 +78,45 @@ struct RecordAssessment {
   const RepairProspect* named_prospect() const;
 };
 
-/// The verdict in sentences.
-struct AssessmentText {
-  std::vector<std::string> asked;
-  std::vector<std::string> found;  ///< what it costs and where, what it is, which channel and parameter
-  std::vector<std::string> to_do;
-  std::vector<std::string> sure;  ///< how far to trust it
-};
-
-AssessmentText verdict_text(const RecordAssessment& assessment);
-/// All of them but what was asked, in their order.
-std::vector<std::string> verdict_sentences(const RecordAssessment& assessment);
-/// Is the controller of the study the one that ran? Empty: it is.
-std::vector<std::string> controller_sentences(const RecordAssessment& assessment);
 /// The CV that a person looks at first: that of the verdict, or the one that the model explains least.
 Eigen::Index worst_cv(const RecordAssessment& assessment);
 
-/// The MV whose valve sticks, if one does, by an answer that was asked for it; otherwise empty.
-std::string stuck_mv(const Study& study, const AssessmentRecord& said);
-/// "MPM", "valve of u2", "-" for none: a source that the answer names.
-std::string source_words(const Study& study, const AssessmentRecord& said, FaultSource source);
-/// The CVs that the repair of the verdict worsens by one of its predictions; there must be a repair.
-std::vector<std::string> worsened_by_repair(const RecordAssessment& assessment);
+/// How a record is assessed.
+struct AssessOptions {
+  std::vector<std::string> methods{"mpmbench"};  ///< the first one gives the verdict
+  /// Standard deviation of the errors that a healthy model may have, of gain, time constants and dead time of
+  /// every channel; 0: the model is exact.
+  double model_error = 0.05;
+  int trials = 200;  ///< simulated records like this one; 0: none
+  std::optional<MonitoringOptions> monitoring = {};
+};
 
-/// The verdict, what it costs, what each method says and how far to trust it.
-Document assessment_document(const RecordAssessment& assessment);
-/// The same for programs.
-std::string assessment_json(const RecordAssessment& assessment);
+/// Loops like a record of a plant, and how each of them is judged.
+struct TrialRequest {
+  Study study;                             ///< trial_study(), one experiment a loop
+  std::function<LoopAssessor()> assessor;  ///< makes one for each thread
+};
 
-/// Number `row` of the answer under this name; NaN when the method has no such number.
-double number_of_cv(const AssessmentRecord& said, std::string_view name, Eigen::Index row);
-/// What the method says is wrong with a CV that it flags; none of a CV that it does not, or when it does not
-/// tell.
-FaultSource source_of_cv(const AssessmentRecord& said, Eigen::Index cv);
-/// The MVs whose channels to a CV the method names.
-std::vector<std::string> named_mvs(const Study& study, const AssessmentRecord& said, Eigen::Index cv);
-/// The logged signal that the method names for a CV that it flags; empty for none.
-std::string named_candidate(const RecordAssessment& assessment, const AssessmentRecord& said,
-                            Eigen::Index cv);
-/// "gain of y2/u1 x 0.62 (0.55 to 0.7)"
-std::string mismatch_sentence(const Study& study, const NamedMismatch& named);
-/// First and last stamp of a window of the study.
-std::string window_text(const RecordAssessment& assessment, int window);
+/// The loops of a request with their answers. `keeps` holds what the records are read from.
+struct TrialLoops {
+  RecordRange records;
+  std::string archive = {};  ///< where they are kept; empty: nowhere
+  std::shared_ptr<const void> keeps = {};
+};
+
+/// Runs the loops of a request. Errors: InputError for a study that cannot be run.
+using TrialRunner = std::function<TrialLoops(const TrialRequest&)>;
+
+/// Runs them one after another and keeps them in memory.
+TrialRunner trials_in_memory(QpSolverFactory factory);
+
+/// The record, read under `study`, as its methods see it: the nominal loop under what moved the plant, the
+/// answers, the check of the model and of the controller, the simulated records beside it, and what a repair
+/// of the channel that is named would bring. `run_trials` runs the simulated records; without them, or where
+/// they cannot be run, RecordAssessment::no_trial says why. Errors: InputError for a record that the study
+/// cannot explain: units, limits, a controller without a model, too few samples; what `run_trials` throws
+/// besides InputError.
+RecordAssessment assess_record(const Study& study, PlantRecord record, const AssessOptions& options,
+                               const QpSolverFactory& factory, const TrialRunner& run_trials);
 
 }  // namespace mpm

@@ -1,14 +1,17 @@
-#include "results/files/sha256.hpp"
+#include "base/sha256.hpp"
 
 #include <array>
+#include <fstream>
 #include <stdexcept>
+#include <vector>
 
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
 namespace mpm {
-
 namespace {
+
+constexpr std::size_t kShownDigits = 16;  // enough against accidents, and short enough for a message
 
 EVP_MD_CTX* context(const std::shared_ptr<void>& state) {
   return static_cast<EVP_MD_CTX*>(state.get());
@@ -44,6 +47,22 @@ std::string Sha256::digits() {
   for (const unsigned char byte : hash)
     digits += fmt::format("{:02x}", byte);
   return digits;
+}
+
+std::string digest_of(std::string_view content) {
+  return sha256(std::as_bytes(std::span(content))).substr(0, kShownDigits);
+}
+
+// In pieces: an archive with its loops may be longer than the memory.
+std::string digest_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> piece(std::size_t{1} << 16);
+  Sha256 hash;
+  do {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    hash.add(std::as_bytes(std::span(piece).first(static_cast<std::size_t>(file.gcount()))));
+  } while (file);
+  return hash.digits().substr(0, kShownDigits);
 }
 
 }  // namespace mpm
