@@ -29,6 +29,7 @@
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/failure_tally.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
@@ -225,6 +226,15 @@ void add_trial(RecordAssessment& assessment, const Study& study,
       campaign = run_and_keep(archive, made->study, run, hooks, command);
     }
     const RecordRange records = records_of(*campaign);
+    FailureTally failures;
+    records.each([&failures](const ExperimentRecord& record) {
+      for (const AssessmentRecord& said : record.assessments) {
+        VerdictFailures of_loop;
+        of_loop.add(said);
+        failures.add(said.form->method().name, of_loop);
+      }
+    });
+    failures.tell(progress);
     const std::size_t last = assessment.said.size();
     RecordTrial trial{archive.filename().string(),
                       static_cast<std::int64_t>(records.size()),
