@@ -14,12 +14,4 @@ void JudgementChanges::add(JudgementPair pair, int cluster) {
     (was ? lost : gained).push_back(std::move(pair));
 }
 
-JudgementChanges judgement_changes(const JudgedRun& before, const JudgedRun& now) {
-  JudgementChanges changes;
-  each_in_both(before.records, now.records, [&](const ExperimentRecord& was, const ExperimentRecord& is) {
-    changes.add({is.draw.index, before.question(was), now.question(is)}, is.draw.world);
-  });
-  return changes;
-}
-
 }  // namespace mpm

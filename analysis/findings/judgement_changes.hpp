@@ -1,12 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
-#include "analysis/experiment/record_range.hpp"
 #include "analysis/findings/world_counts.hpp"
 #include "analysis/statistics/mcnemar.hpp"
 
@@ -34,17 +32,5 @@ struct JudgementChanges {
   /// Counts a pair, unless it is judged in neither run.
   void add(JudgementPair pair, int cluster);
 };
-
-/// One question to an experiment, such as whether its CV is located.
-using Question = std::function<Correctness(const ExperimentRecord&)>;
-
-/// The experiments of a run in the order of the index, and what is asked of each.
-struct JudgedRun {
-  RecordRange records;
-  Question question;
-};
-
-/// Compares the experiments that are in both; the same must be wrong in both (pair_runs()).
-JudgementChanges judgement_changes(const JudgedRun& before, const JudgedRun& now);
 
 }  // namespace mpm

@@ -85,7 +85,7 @@ std::vector<SuiteAxis> used(const std::vector<SuiteAxis>& axis, std::vector<Cell
 }
 
 MethodScores scores_of(const MethodRates& of) {
-  MethodScores scores{of.reason, {}};
+  MethodScores scores{.reason = of.reason, .failed = of.failures.failed, .rates = {}};
   for (const MethodRateInfo& info : method_rate_infos())
     scores.rates.push_back(of.*info.rate);
   for (const MethodEstimateInfo& info : method_estimate_infos())

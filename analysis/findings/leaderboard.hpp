@@ -22,6 +22,7 @@ inline constexpr double kBoardConfidence = 0.95;
 /// How often a method was right on some loops.
 struct MethodScores {
   std::string reason;       ///< why there was no verdict on the first loop without one; empty: on every loop
+  std::int64_t failed = 0;  ///< loops on which it was asked and failed
   std::vector<Rate> rates;  ///< in the order of method_rate_infos()
   /// In the order of method_estimate_infos(). Of several cells only means that keep their clusters: medians
   /// cannot be added up.

@@ -299,6 +299,7 @@ class RateCounts {
     outcome_counts_.add(outcome_scope(study_, said.form->method(), counts_.thresholds), record.draw.world,
                         truth_of(study_, record), outcome);
     counts_.add(study_, record, said);
+    failures_.add(said);
     if (reason_.empty())
       reason_ = said.reason;
   }
@@ -307,6 +308,7 @@ class RateCounts {
     const double confidence = study_.aggregate.confidence;
     MethodRates rates{.reason = reason_,
                       .outcomes = std::move(outcomes_),
+                      .failures = failures_,
                       .channel = counts_.channel.rate(confidence),
                       .channel_impact = counts_.channel_impact.rate(confidence),
                       .parameter_impact = counts_.parameter_impact.rate(confidence),
@@ -343,10 +345,26 @@ class RateCounts {
   std::size_t method_;
   Counts counts_;
   OutcomeCounts outcome_counts_;
+  VerdictFailures failures_;
   std::string outcomes_, reason_;
 };
 
 }  // namespace
+
+void VerdictFailures::add(const AssessmentRecord& said) {
+  const bool is_failure = said.status == AssessmentStatus::failed;
+  asked += said.answered() || is_failure ? 1 : 0;
+  failed += is_failure ? 1 : 0;
+  if (is_failure && reason.empty())
+    reason = said.reason;
+}
+
+void VerdictFailures::add(const VerdictFailures& more) {
+  asked += more.asked;
+  failed += more.failed;
+  if (reason.empty())
+    reason = more.reason;
+}
 
 std::span<const MethodRateInfo> method_rate_infos() {
   return kRates;

@@ -17,6 +17,17 @@
 
 namespace mpm {
 
+/// How often a method was asked and failed (AssessmentStatus::failed). A loop to which it does not apply asks
+/// nothing of it.
+struct VerdictFailures {
+  std::int64_t failed = 0;
+  std::int64_t asked = 0;   ///< loops with a verdict, and these
+  std::string reason = {};  ///< of the first one; empty: none
+
+  void add(const AssessmentRecord& said);
+  void add(const VerdictFailures& more);
+};
+
 /// How often one method is right. A loop without a verdict counts in `answered` only; method_rate_infos()
 /// says what each rate counts, and method_estimate_infos() what each estimate is.
 struct MethodRates {
@@ -24,6 +35,7 @@ struct MethodRates {
       reason;  ///< why there was no verdict on the first loop without one; empty when it always gave one
   std::string outcomes =
       {};  ///< a letter_of(LoopOutcome) for each record, in their order; kNoLoop: not assessed
+  VerdictFailures failures = {};
   Rate answered = {}, detected = {}, detected_mpm = {}, detected_ud = {}, detected_impact = {},
        flagged_without_impact = {}, false_alarm_healthy = {}, false_alarm_tuning = {}, located = {},
        source = {}, channel = {}, channel_impact = {}, parameter_impact = {}, size_covered = {},

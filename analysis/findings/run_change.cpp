@@ -79,14 +79,16 @@ Correctness ask_parameter(const Study& study, const ExperimentRecord& record, co
 }
 
 constexpr std::array<VerdictQuestion, 6> kQuestions{{
-    {"flag, fault", "loops with a fault are flagged, and no others", &ask_flag<FlagTruth::fault>},
-    {"flag, impact", "loops with a fault that has an impact are flagged, and no others",
+    {"flag_fault", "flag, fault", "loops with a fault are flagged, and no others",
+     &ask_flag<FlagTruth::fault>},
+    {"flag_impact", "flag, impact", "loops with a fault that has an impact are flagged, and no others",
      &ask_flag<FlagTruth::impact>},
-    {"CV", "the affected CV of a flagged loop is located; in a named scenario, every CV is judged correctly",
+    {"located", "CV",
+     "the affected CV of a flagged loop is located; in a named scenario, every CV is judged correctly",
      &ask_location},
-    {"source", "the source is right in loops with either a mismatch or a disturbance", &ask_source},
-    {"channel", "the channel of a single mismatch is named", &ask_channel},
-    {"parameter", "the channel and parameter of a single mismatch are named", &ask_parameter},
+    {"source", "source", "the source is right in loops with either a mismatch or a disturbance", &ask_source},
+    {"channel", "channel", "the channel of a single mismatch is named", &ask_channel},
+    {"parameter", "parameter", "the channel and parameter of a single mismatch are named", &ask_parameter},
 }};
 
 // --- Rates ---
@@ -161,11 +163,32 @@ std::vector<RateChange> corrected(std::vector<RateChange> changes) {
 
 // --- Verdicts ---
 
-/// Those that were judged.
-std::vector<VerdictChange> judged(std::vector<VerdictChange> verdicts) {
-  std::erase_if(verdicts, [](const VerdictChange& verdict) { return verdict.changes.pairs == 0; });
-  return verdicts;
-}
+/// Asks a method that both runs have every question, of one paired experiment after the other.
+class VerdictComparison {
+ public:
+  VerdictComparison(const MethodRun& before, const MethodRun& now) : before_(before), now_(now) {
+    for (const VerdictQuestion& question : kQuestions)
+      verdicts_.push_back({&question});
+  }
+
+  void add_pair(const ExperimentRecord& before, const ExperimentRecord& now) {
+    for (VerdictChange& verdict : verdicts_)
+      verdict.changes.add(
+          {now.draw.index, verdict.question->ask(before_.run.study, before, before_.said(before)),
+           verdict.question->ask(now_.run.study, now, now_.said(now))},
+          now.draw.world);
+  }
+
+  /// Those that were judged.
+  std::vector<VerdictChange> finish() && {
+    std::erase_if(verdicts_, [](const VerdictChange& verdict) { return verdict.changes.pairs == 0; });
+    return std::move(verdicts_);
+  }
+
+ private:
+  MethodRun before_, now_;
+  std::vector<VerdictChange> verdicts_;
+};
 
 // --- Numbers ---
 
@@ -258,23 +281,17 @@ class MethodComparison {
   MethodComparison(const MethodRun& before, const MethodRun& now)
       : before_(before),
         now_(now),
+        verdicts_(before, now),
         numbers_(*before.run.forms[before.place], *now.run.forms[now.place]),
         rates_before_(before.rates()),
-        rates_now_(now.rates()) {
-    for (const VerdictQuestion& question : kQuestions)
-      verdicts_.push_back({&question});
-  }
+        rates_now_(now.rates()) {}
 
   /// An experiment that both have; only of paired runs.
   void add_pair(const ExperimentRecord& before, const ExperimentRecord& now) {
-    const AssessmentRecord &was = before_.said(before), &is = now_.said(now);
     rates_.add(now.draw.world, before_.rates().of(std::span(&before, 1)),
                now_.rates().of(std::span(&now, 1)));
-    for (VerdictChange& verdict : verdicts_)
-      verdict.changes.add({now.draw.index, verdict.question->ask(before_.run.study, before, was),
-                           verdict.question->ask(now_.run.study, now, is)},
-                          now.draw.world);
-    numbers_.add(now.draw.index, was, is);
+    verdicts_.add_pair(before, now);
+    numbers_.add(now.draw.index, before_.said(before), now_.said(now));
   }
 
   /// An experiment of either; only of runs that are not paired.
@@ -289,7 +306,7 @@ class MethodComparison {
       return change;
     }
     change.rates = corrected(rates_.changes(confidence));
-    change.verdicts = judged(std::move(verdicts_));
+    change.verdicts = std::move(verdicts_).finish();
     change.numbers = std::move(numbers_).finish(confidence);
     return change;
   }
@@ -297,10 +314,20 @@ class MethodComparison {
  private:
   MethodRun before_, now_;
   PairedRates rates_;
-  std::vector<VerdictChange> verdicts_;
+  VerdictComparison verdicts_;
   NumberChanges numbers_;
   Collector<MethodRates> rates_before_, rates_now_;
 };
+
+/// Every method that both have, once in each, in the order of the second.
+std::vector<std::pair<MethodRun, MethodRun>> methods_in_both(const StudyRun& before, const StudyRun& now) {
+  std::vector<std::pair<MethodRun, MethodRun>> methods;
+  for (std::size_t place = 0; place < now.forms.size(); ++place)
+    for (std::size_t old = 0; old < before.forms.size(); ++old)
+      if (before.forms[old]->method().name == now.forms[place]->method().name)
+        methods.emplace_back(MethodRun{before, old}, MethodRun{now, place});
+  return methods;
+}
 
 /// Corrects the p-values of all questions.
 void correct_questions(std::vector<MethodChange>& methods) {
@@ -348,10 +375,8 @@ bool MethodChange::changed() const {
 std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun& now,
                                          const RunPairing& pairing) {
   std::vector<MethodComparison> methods;
-  for (std::size_t place = 0; place < now.forms.size(); ++place)
-    for (std::size_t old = 0; old < before.forms.size(); ++old)
-      if (before.forms[old]->method().name == now.forms[place]->method().name)
-        methods.emplace_back(MethodRun{before, old}, MethodRun{now, place});
+  for (const auto& [was, is] : methods_in_both(before, now))
+    methods.emplace_back(was, is);
   const auto for_all = [&methods](auto add) {
     return [&methods, add](const auto&... records) {
       for (MethodComparison& method : methods)
@@ -367,6 +392,27 @@ std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun&
   std::vector<MethodChange> changes;
   for (MethodComparison& method : methods)
     changes.push_back(std::move(method).finish(pairing.paired()));
+  correct_questions(changes);
+  return changes;
+}
+
+std::vector<MethodChange> verdict_changes(const StudyRun& before, const StudyRun& now) {
+  const std::vector<std::pair<MethodRun, MethodRun>> methods = methods_in_both(before, now);
+  std::vector<VerdictComparison> comparisons;
+  for (const auto& [was, is] : methods)
+    comparisons.emplace_back(was, is);
+  each_in_both(before.records, now.records, [&](const ExperimentRecord& was, const ExperimentRecord& is) {
+    for (VerdictComparison& comparison : comparisons)
+      comparison.add_pair(was, is);
+  });
+  std::vector<MethodChange> changes;
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    changes.push_back({now.forms[methods[i].second.place]->method().name,
+                       methods[i].first.place,
+                       methods[i].second.place,
+                       {},
+                       std::move(comparisons[i]).finish(),
+                       {}});
   correct_questions(changes);
   return changes;
 }

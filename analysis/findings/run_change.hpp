@@ -49,6 +49,7 @@ struct RateChange {
 
 /// One question to an answer that may come to something else in the other run.
 struct VerdictQuestion {
+  const char* key;      ///< in names of gates: "flag_impact"
   const char* name;     ///< for people: "flag, impact"
   const char* meaning;  ///< when the answer is right
   Correctness (*ask)(const Study&, const ExperimentRecord&, const AssessmentRecord&);
@@ -90,5 +91,8 @@ struct MethodChange {
 /// All methods of both runs, in the order of the second. Goes through the records once.
 std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun& now,
                                          const RunPairing& pairing);
+
+/// The same of paired runs without rates and numbers, which take longer.
+std::vector<MethodChange> verdict_changes(const StudyRun& before, const StudyRun& now);
 
 }  // namespace mpm

@@ -88,6 +88,8 @@ struct MethodDescription {
   /// What determines the answers of an outside method besides its name: its command with the content of its
   /// files, and its options. Empty for methods of this program.
   std::string fingerprint = {};
+  /// The options in the fingerprint, as JSON; empty for methods of this program.
+  std::string given_options = {};
 };
 
 /// The options of a method, which `keys` ties to a value of them; `meaning` is for the manual.

@@ -1,7 +1,9 @@
 #include "analysis/methods/method_file.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <sstream>
-#include <string_view>
 
 #include "scenarios/toml/toml_file.hpp"
 #include "scenarios/toml/toml_table.hpp"
@@ -12,13 +14,6 @@ namespace mpm {
 namespace {
 
 const std::vector<std::string> kMethodKeys{"command", "time_limit", "options"};
-
-bool is_method_name(std::string_view name) {
-  constexpr std::size_t kLongest = 64;
-  return !name.empty() && name.size() <= kLongest &&
-         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
-             std::string_view::npos;
-}
 
 std::string program_options(const TomlTable& table) {
   const toml::node* const node = table.find("options");
@@ -32,6 +27,15 @@ std::string program_options(const TomlTable& table) {
 }
 
 }  // namespace
+
+bool is_method_name(std::string_view name) {
+  constexpr std::size_t kLongest = 64;
+  constexpr std::array<std::string_view, 4> kTaken{"all", "experiments", "findings", "loops"};
+  return !name.empty() && name.size() <= kLongest && name.front() != '-' &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
+             std::string_view::npos &&
+         std::find(kTaken.begin(), kTaken.end(), name) == kTaken.end();
+}
 
 std::vector<MethodProgram> load_method_file(const std::filesystem::path& path) {
   const std::string file_name = path.string();
@@ -47,7 +51,7 @@ std::vector<MethodProgram> load_method_file(const std::filesystem::path& path) {
   std::vector<MethodProgram> programs;
   for (const std::string& name : names) {
     if (!is_method_name(name))
-      methods.refuse(name, in_quotes(name), "a name of 1 to 64 letters, digits, '-' and '_'");
+      methods.refuse(name, in_quotes(name), kMethodNameRule);
     const TomlTable table = methods.table(name, kMethodKeys);
     MethodProgram program{
         .name = name, .command = read_command(table, "command"), .options = program_options(table)};

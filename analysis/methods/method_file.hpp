@@ -2,9 +2,19 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace mpm {
+
+/// The rule for the name of a method that somebody else has made, wherever the name comes from: it is part of
+/// option values, file names, tables and pages. Words that stand for something else where a name may stand
+/// are taken.
+inline constexpr const char* kMethodNameRule =
+    "a name of 1 to 64 letters (a to z), digits, '-' and '_', without '-' at its beginning, and not all, "
+    "experiments, findings or loops";
+
+bool is_method_name(std::string_view name);
 
 /// A method of assessment that is a program of its own (analysis/methods/outside_program).
 struct MethodProgram {

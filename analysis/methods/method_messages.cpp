@@ -221,6 +221,8 @@ class AnswerReader {
     const Json* const numbers = given(answer, "numbers");
     if (numbers == nullptr)
       return;
+    if (!numbers->is_object())
+      refuse("numbers", *numbers, "an object with numbers that the description of the method has");
     for (const auto& item : numbers->items()) {
       const auto info = std::find_if(method_.numbers.begin(), method_.numbers.end(),
                                      [&](const auto& each) { return each.name == item.key(); });

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,6 +18,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "base/error.hpp"
 #include "base/system/foreign_text.hpp"
+#include "base/system/json_entry.hpp"
 #include "base/system/program_talk.hpp"
 
 namespace mpm {
@@ -24,7 +27,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kProtocol = 1;
-constexpr std::size_t kShownOfUnknown = 100;  // bytes, in a message
 
 std::unique_ptr<ProgramTalk> talk_with(const MethodProgram& program) {
   return std::make_unique<ProgramTalk>(fmt::format("method '{}'", program.name), program.command,
@@ -46,126 +48,99 @@ struct ProgramDescription {
   std::vector<std::string> methods;
 };
 
+using Flags = std::vector<std::pair<std::string, bool*>>;
+
+std::string text_or(const JsonEntry& object, const char* key, const std::string& standard) {
+  const std::optional<JsonEntry> found = object.find(key);
+  return found ? found->text(kLongestMethodText) : standard;
+}
+
+/// The places of the words in the list under a key, which may be absent, among those that are known.
+std::vector<std::size_t> words_in(const JsonEntry& description, const char* key,
+                                  const std::vector<std::string>& known) {
+  std::vector<std::size_t> places;
+  if (const std::optional<JsonEntry> found = description.find(key))
+    for (const JsonEntry& word : found->list(fmt::format("a list of some of {}", fmt::join(known, ", "))))
+      places.push_back(word.one_of(known));
+  return places;
+}
+
+/// Sets the flags of the words in the list.
+void read_flags(const JsonEntry& description, const char* key, const Flags& flags) {
+  std::vector<std::string> known;
+  for (const auto& flag : flags)
+    known.push_back(flag.first);
+  for (const std::size_t place : words_in(description, key, known))
+    *flags[place].second = true;
+}
+
+/// A method from outside could ask for itself.
+std::vector<std::string> methods_of_this_program() {
+  std::vector<std::string> own;
+  for (const AssessmentMethodInfo& method : assessment_methods())
+    if (method.origin.empty())
+      own.push_back(method.name);
+  return own;
+}
+
+AssessmentNumberInfo number_info(const JsonEntry& entry) {
+  entry.require_keys({"name", "scope", "meaning", "unit"});
+  AssessmentNumberInfo info{.name = text_or(entry, "name", ""),
+                            .meaning = text_or(entry, "meaning", ""),
+                            .unit = text_or(entry, "unit", "1")};
+  entry.at("name").require(
+      !info.name.empty() &&
+          info.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") == std::string::npos,
+      "a name of a-z, 0-9 and _");
+  constexpr std::array kScopes{NumberScope::loop, NumberScope::cv, NumberScope::channel};
+  if (const std::optional<JsonEntry> scope = entry.find("scope"))
+    info.scope = kScopes[scope->one_of({"loop", "cv", "channel"})];
+  else
+    info.scope = NumberScope::loop;
+  return info;
+}
+
+void read_numbers(const JsonEntry& entry, MethodDescription& method) {
+  const std::vector<JsonEntry> numbers = entry.list("a list of objects with a name");
+  if (numbers.size() > kMostMethodNumbers)
+    throw InputError(entry.place(), fmt::format("{} numbers", numbers.size()),
+                     fmt::format("at most {}", kMostMethodNumbers));
+  std::set<std::string> names;
+  for (const JsonEntry& number : numbers) {
+    method.numbers.push_back(number_info(number));
+    if (const std::string& name = method.numbers.back().name; !names.insert(name).second)
+      throw InputError(number.place(), fmt::format("the number '{}' a second time", name), "every name once");
+  }
+}
+
 /// Reads what a program says of itself.
-class DescriptionReader {
- public:
-  explicit DescriptionReader(const MethodProgram& program)
-      : place_(fmt::format("method '{}', description", program.name)) {}
-
-  void read(const Json& answer, ProgramDescription& description) const {
-    MethodDescription& method = description.method;
-    refuse_others(answer,
-                  {"title", "verdict", "needs", "answers", "methods", "numbers", "stated_false_alarms"});
-    method.title = text(answer, "title", method.title);
-    method.verdict = text(answer, "verdict", method.verdict);
-    for (const std::string& need : words(answer, "needs"))
-      set(need, {{{"setpoints", &method.requirements.setpoints},
-                  {"moving_setpoints", &method.requirements.moving_setpoints},
-                  {"benchmark", &method.requirements.benchmark},
-                  {"moving_mvs", &method.requirements.moving_mvs},
-                  {"nominal_loop", &method.requirements.nominal_loop},
-                  {"complete_record", &method.requirements.complete_record}}});
-    for (const std::string& word : words(answer, "answers"))
-      set(word, {{{"cv", &method.locates_cvs},
-                  {"channel", &method.names_channels},
-                  {"source", &method.tells_sources},
-                  {"mismatch", &method.names_mismatches},
-                  {"candidate", &method.names_candidates}}});
-    for (const std::string& name : words(answer, "methods"))
-      description.methods.push_back(own_method(name));
-    if (const auto stated = answer.find("stated_false_alarms"); stated != answer.end() && !stated->is_null())
-      method.stated_false_alarms = stated->get<double>();
-    if (const auto numbers = answer.find("numbers"); numbers != answer.end())
-      read_numbers(*numbers, method);
-  }
-
- private:
-  using Flags = std::vector<std::pair<std::string, bool*>>;
-
-  std::string text(const Json& object, const char* key, const std::string& standard) const {
-    std::string found = object.value(key, standard);
-    if (found.size() > kLongestMethodText)
-      throw InputError(place_, fmt::format("{} of {} bytes", key, found.size()),
-                       fmt::format("at most {}", kLongestMethodText));
-    return found;
-  }
-
-  void read_numbers(const Json& numbers, MethodDescription& method) const {
-    if (numbers.size() > kMostMethodNumbers)
-      throw InputError(place_, fmt::format("{} numbers", numbers.size()),
-                       fmt::format("at most {}", kMostMethodNumbers));
-    std::set<std::string> names;
-    for (const Json& number : numbers) {
-      method.numbers.push_back(number_info(number));
-      if (const std::string& name = method.numbers.back().name; !names.insert(name).second)
-        throw InputError(place_, fmt::format("the number '{}' a second time", name), "every name once");
-    }
-  }
-
-  static std::vector<std::string> words(const Json& answer, const char* key) {
-    return answer.value(key, std::vector<std::string>{});
-  }
-
-  /// A method from outside could ask for itself.
-  std::string own_method(const std::string& name) const {
-    std::vector<std::string> own;
-    for (const AssessmentMethodInfo& method : assessment_methods())
-      if (method.origin.empty())
-        own.push_back(method.name);
-    if (std::find(own.begin(), own.end(), name) == own.end())
-      throw InputError(fmt::format("{}, methods", place_),
-                       fmt::format("'{}'", foreign_text(name, kShownOfUnknown)),
-                       fmt::format("{}", fmt::join(own, ", ")));
-    return name;
-  }
-
-  void set(const std::string& word, const Flags& flags) const {
-    std::vector<std::string> known;
-    for (const auto& [name, flag] : flags) {
-      known.push_back(name);
-      if (name == word) {
-        *flag = true;
-        return;
-      }
-    }
-    throw InputError(place_, fmt::format("'{}'", word), fmt::format("{}", fmt::join(known, ", ")));
-  }
-
-  void refuse_others(const Json& object, const std::vector<std::string>& known) const {
-    if (!object.is_object())
-      throw InputError(
-          place_, object.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, kLongestMethodText),
-          "a JSON object");
-    for (const auto& item : object.items())
-      if (std::find(known.begin(), known.end(), item.key()) == known.end())
-        throw InputError(place_,
-                         fmt::format("the unknown key '{}'", foreign_text(item.key(), kShownOfUnknown)),
-                         fmt::format("{}", fmt::join(known, ", ")));
-  }
-
-  AssessmentNumberInfo number_info(const Json& json) const {
-    refuse_others(json, {"name", "scope", "meaning", "unit"});
-    AssessmentNumberInfo info{.name = text(json, "name", ""),
-                              .meaning = text(json, "meaning", ""),
-                              .unit = text(json, "unit", "1")};
-    const std::string scope = json.value("scope", "loop");
-    const std::array<std::pair<const char*, NumberScope>, 3> scopes{
-        {{"loop", NumberScope::loop}, {"cv", NumberScope::cv}, {"channel", NumberScope::channel}}};
-    const auto found =
-        std::find_if(scopes.begin(), scopes.end(), [&](const auto& each) { return scope == each.first; });
-    const bool is_name =
-        !info.name.empty() &&
-        info.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") == std::string::npos;
-    if (found == scopes.end() || !is_name)
-      throw InputError(place_,
-                       json.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, kLongestMethodText),
-                       "a number with a name of a-z, 0-9 and _, and a scope loop, cv or channel");
-    info.scope = found->second;
-    return info;
-  }
-
-  std::string place_;
-};
+void read_description(const JsonEntry& entry, ProgramDescription& description) {
+  MethodDescription& method = description.method;
+  AssessmentRequirements& needs = method.requirements;
+  entry.require_keys({"title", "verdict", "needs", "answers", "methods", "numbers", "stated_false_alarms"});
+  method.title = text_or(entry, "title", method.title);
+  method.verdict = text_or(entry, "verdict", method.verdict);
+  read_flags(entry, "needs",
+             {{"setpoints", &needs.setpoints},
+              {"moving_setpoints", &needs.moving_setpoints},
+              {"benchmark", &needs.benchmark},
+              {"moving_mvs", &needs.moving_mvs},
+              {"nominal_loop", &needs.nominal_loop},
+              {"complete_record", &needs.complete_record}});
+  read_flags(entry, "answers",
+             {{"cv", &method.locates_cvs},
+              {"channel", &method.names_channels},
+              {"source", &method.tells_sources},
+              {"mismatch", &method.names_mismatches},
+              {"candidate", &method.names_candidates}});
+  const std::vector<std::string> own = methods_of_this_program();
+  for (const std::size_t place : words_in(entry, "methods", own))
+    description.methods.push_back(own[place]);
+  if (const std::optional<JsonEntry> stated = entry.find("stated_false_alarms"))
+    method.stated_false_alarms = stated->number(0.0, 1.0);
+  if (const std::optional<JsonEntry> numbers = entry.find("numbers"))
+    read_numbers(*numbers, method);
+}
 
 ProgramDescription description_of(const MethodProgram& program) {
   ProgramDescription description;
@@ -177,10 +152,7 @@ ProgramDescription description_of(const MethodProgram& program) {
   method.origin = fmt::format("program {}", fmt::join(program.command, " "));
   try {
     const Json answer = talk_with(program)->ask(question("describe", describe_content(program)));
-    DescriptionReader(program).read(answer, description);
-  } catch (const Json::exception& error) {
-    throw InputError(fmt::format("method '{}', description", program.name), error.what(),
-                     "the description of a method, docs/bring_your_own.md");
+    read_description({answer, fmt::format("method '{}', description", program.name)}, description);
   } catch (const ChildFailure& error) {
     throw InputError(fmt::format("method '{}', description", program.name), error.what(),
                      fmt::format("an answer within {} s", program.time_limit));

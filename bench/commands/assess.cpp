@@ -21,6 +21,7 @@
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/failure_tally.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
@@ -106,7 +107,17 @@ TrialRunner kept_trials(const AssessArguments& options, Progress& progress, cons
       campaign = run_and_keep(archive, request.study, run, hooks, command);
     }
     const auto kept = std::make_shared<const Campaign>(*std::move(campaign));
-    return TrialLoops{records_of(*kept), archive.filename().string(), kept};
+    const RecordRange records = records_of(*kept);
+    FailureTally failures;
+    records.each([&failures](const ExperimentRecord& record) {
+      for (const AssessmentRecord& said : record.assessments) {
+        VerdictFailures of_loop;
+        of_loop.add(said);
+        failures.add(said.form->method().name, of_loop);
+      }
+    });
+    failures.tell(progress);
+    return TrialLoops{records, archive.filename().string(), kept};
   };
 }
 

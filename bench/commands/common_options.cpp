@@ -113,6 +113,7 @@ std::vector<std::string> take_method_files(const std::vector<std::string>& files
     for (const MethodProgram& program : load_method_file(file)) {
       trust_program(program.command);
       AssessmentMethodInfo method = program_method(program);
+      method.given_options = program.options;
       method.fingerprint = fmt::format("{}, options {}", command_identity(program.command), program.options);
       add_assessment_method(std::move(method));
       names.push_back(program.name);

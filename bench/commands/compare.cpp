@@ -21,6 +21,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
+#include "bench/commands/failure_tally.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/archive_input.hpp"
@@ -223,7 +224,7 @@ std::string compare_part(const ComparisonTask& task, Progress& progress) {
 
 /// How often each of the methods that are asked for is right; the archive with all of them is written when an
 /// output is asked for.
-std::string found_text(const ComparisonTask& task) {
+std::string found_text(const ComparisonTask& task, FailureTally& failures) {
   const CompareArguments& options = task.options;
   const auto text = [&](const Campaign& shown, const StudyFindings& findings) {
     const Document document = comparison_document(shown, findings);
@@ -233,14 +234,19 @@ std::string found_text(const ComparisonTask& task) {
   std::string found;
   if (!shows_all) {
     const Campaign shown = with_methods(task.campaign, task.asked, options.experiments);
-    found = text(shown, findings_of(shown));
+    const StudyFindings findings = findings_of(shown);
+    failures.add(findings);
+    found = text(shown, findings);
   }
   if (!shows_all && options.output.empty())
     return found;
   const StudyFindings findings = findings_of(task.campaign);
   if (!options.output.empty())
     write_archive(options.output, task.campaign, findings);
-  return shows_all ? text(task.campaign, findings) : found;
+  if (!shows_all)
+    return found;
+  failures.add(findings);
+  return text(task.campaign, findings);
 }
 
 /// Adds the answers that are missing to the campaign, and shows and writes what was found; no other
@@ -258,18 +264,20 @@ std::string compare_all(ComparisonTask& task, Progress& progress) {
   else if (!output.empty())
     alone.emplace(kept_shards(output));
   require_unchanged(task.options, task.digest);
+  FailureTally failures;
   std::string found = advised(task, progress, [&] {
     if (comparison) {
       const CampaignHooks hooks = hooks_of(progress);
       comparison->run(hooks);
       comparison->add_to(task.campaign, task.command_line, hooks.stop);
     }
-    return found_text(task);
+    return found_text(task, failures);
   });
   if (comparison && !output.empty()) {
     comparison.reset();
     remove_shard_folder(kept_shards(output));
   }
+  failures.tell(progress);
   return found;
 }
 

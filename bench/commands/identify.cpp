@@ -20,6 +20,7 @@
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
 #include "plants/linear/step_response_fit.hpp"
+#include "results/text/number_json.hpp"
 #include "scenarios/toml/toml_literal.hpp"
 
 namespace mpm {
@@ -250,7 +251,7 @@ std::string model_json_text(const Study& study, const Eigen::VectorXd& sizes,
     json["steps"][inputs[i].name] = sizes(static_cast<Eigen::Index>(i));
   for (const IdentifiedChannel& channel : channels)
     json["channels"].push_back(channel_json(channel));
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 std::string model_toml_text(const Study& study, const Eigen::VectorXd& sizes,

@@ -10,9 +10,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/methods/method_file.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
+#include "base/system/child_process.hpp"
+#include "base/system/program_trust.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
@@ -108,17 +111,51 @@ std::vector<std::string> command_of(const std::filesystem::path& file) {
   return {};
 }
 
+/// What prints 1 where the language of the file has something of this name, and 0 elsewhere.
+std::vector<std::string> question_of(const std::filesystem::path& file, const std::string& name) {
+  if (file.extension() == ".py")
+    return {"python3", "-I", "-c",
+            "import importlib.util, sys; "
+            "print(int(sys.argv[1] == 'mpmbench' or importlib.util.find_spec(sys.argv[1]) is not None))",
+            name};
+  return {"octave-cli", "--norc",
+          "--quiet",    "--no-gui",
+          "--eval",     fmt::format("printf ('%d\\n', any (exist ('{}') == [2, 3, 5, 103]))", name)};
+}
+
+/// Refuses a file that would hide a module of Python or a function of Octave: what imports or calls that
+/// would get the method.
+void require_unknown_name(const std::filesystem::path& file, const std::string& name) {
+  constexpr double kPatience = 20.0;  // s
+  const std::vector<std::string> question = question_of(file, name);
+  trust_program(question);
+  try {
+    ChildProcess program(question);
+    if (program.receive(ChildProcess::in_seconds(kPatience)) != "1")
+      return;
+  } catch (const ChildFailure&) {  // there is none here, and nobody knows
+    return;
+  }
+  throw InputError("FILE",
+                   fmt::format("'{}', the name of a {}, which the file would hide from what uses it", name,
+                               file.extension() == ".py" ? "module of Python" : "function of Octave"),
+                   "another name");
+}
+
 ExitCode init_method(const std::filesystem::path& file) {
   const std::vector<std::string> command = command_of(file);
   if (command.empty())
     throw InputError("FILE", fmt::format("'{}'", file.string()), "NAME.py or NAME.m");
   const std::string name = name_of_file(file);
+  if (!is_method_name(name))
+    throw InputError("FILE", fmt::format("'{}'", name), kMethodNameRule);
   const std::vector<std::string> ours = assessment_method_names();
   if (std::find(ours.begin(), ours.end(), name) != ours.end())
     throw InputError("FILE", fmt::format("the name of the method {}", name),
                      fmt::format("a name that is not one of {}", fmt::join(ours, ", ")));
   const std::filesystem::path table = std::filesystem::path(file).replace_extension(".toml");
   require_new(file);
+  require_unknown_name(file, name);
   write_new(table, fmt::format("# A method that is a program (docs/bring_your_own.md).\n\n[method.{}]\n"
                                "command = [{:?}]\n"
                                "time_limit = 60                 # seconds for an answer\n"

@@ -11,6 +11,7 @@
 #include "bench/campaign/part_merge.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
+#include "bench/commands/failure_tally.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
 #include "bench/files/output_file.hpp"
@@ -21,6 +22,7 @@
 #include "results/document/document_text.hpp"
 #include "results/summary/summary.hpp"
 #include "results/text/experiment_text.hpp"
+#include "results/text/number_json.hpp"
 
 namespace mpm {
 namespace {
@@ -61,7 +63,7 @@ std::string missing_json(const PartMerge& parts) {
             {"missing_ranges", ranges},           {"range", to_string(missing)}};
   if (const std::optional<MissingPieces> pieces = parts.missing_pieces())
     json["pieces"] = Json{{"of", pieces->of}, {"missing", pieces->numbers}, {"array", pieces->array()}};
-  return json.dump(2) + '\n';
+  return json_text(json);
 }
 
 /// Writes the archive. Throws std::runtime_error when something is missing: the other parts may be under way.
@@ -74,6 +76,9 @@ void write_merged(const MergeArguments& options, const PartMerge& parts, Progres
     write_archive(options.output, campaign, findings);
     if (!options.quiet && !options.json)
       print_result(document_text(summary_document(campaign, findings, options.output)));
+    FailureTally failures;
+    failures.add(findings);
+    failures.tell(progress);
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error));
   }

@@ -248,7 +248,7 @@ void repair_one(const Campaign& campaign, std::int64_t index, const ChannelChoic
   if (json) {
     Json all = done ? json_of(study, *done) : heading_json(record.draw);
     all["candidates"] = prospects_json(study, prospects);
-    print_result(all.dump(2) + "\n");
+    print_result(json_text(all));
     return;
   }
   print_result(fmt::format(
@@ -304,7 +304,7 @@ void repair_all(const Campaign& campaign, const ChannelChoice& choice, const Rep
             {"repairs", Json::array()}};
   for (const Repair& each : repairs)
     json["repairs"].push_back(json_of(campaign.study, each));
-  print_result(fmt::format("{}\n", json.dump(2)));
+  print_result(json_text(json));
 }
 
 ExitCode repair(const RepairArguments& options) {

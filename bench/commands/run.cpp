@@ -22,6 +22,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
+#include "bench/commands/failure_tally.hpp"
 #include "bench/commands/narrator.hpp"
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
@@ -78,12 +79,14 @@ void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
 }
 
 void run_whole(const RunArguments& options, const Study& study, const RunOptions& run_options,
-               CampaignHooks hooks, Narrator& narrator, const std::string& command_line) {
+               CampaignHooks hooks, Narrator& narrator, Progress& progress, const std::string& command_line) {
   std::string summary;
+  FailureTally failures;
   hooks.on_end = [&](Campaign& campaign) {
     note_command(campaign, command_line);
     const StudyFindings findings = findings_of(campaign);
     write_archive(options.output, campaign, findings);
+    failures.add(findings);
     if (!options.quiet)
       summary = document_text(summary_document(campaign, findings, options.output));
   };
@@ -92,6 +95,7 @@ void run_whole(const RunArguments& options, const Study& study, const RunOptions
   remove_shards(options.output);
   if (!options.quiet)
     print_result(summary);
+  failures.tell(progress);
 }
 
 /// The part of the campaign that --shard and --range name.
@@ -188,7 +192,7 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
     if (part)
       run_one_part(options, *part, narrator.with_stages(hooks), progress);
     else
-      run_whole(options, study, run_options, hooks, narrator, command_line);
+      run_whole(options, study, run_options, hooks, narrator, progress, command_line);
   } catch (const OtherRun& error) {
     throw error.with_advice();
   } catch (const InputError&) {

@@ -20,6 +20,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
+#include "bench/commands/failure_tally.hpp"
 #include "bench/commands/study_series.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
@@ -181,14 +182,21 @@ ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   }
   require_archives(studies, folder, run, options.overwrite);
   std::vector<CellScores> scores;
+  FailureTally failures;
   run_series(studies, run, progress, options.output, command_line, [&](std::size_t place, KeptRun kept) {
     const SuiteCell& cell = *cells[place];
-    scores.push_back(kept.campaign ? cell_scores(cell, findings_of(*kept.campaign))
-                                   : CellScores{.plant = cell.plant,
-                                                .family = cell.family,
-                                                .seed = cell.study.seed,
-                                                .trouble = std::move(kept.trouble)});
+    if (!kept.campaign) {
+      scores.push_back({.plant = cell.plant,
+                        .family = cell.family,
+                        .seed = cell.study.seed,
+                        .trouble = std::move(kept.trouble)});
+      return;
+    }
+    const StudyFindings findings = findings_of(*kept.campaign);
+    failures.add(findings);
+    scores.push_back(cell_scores(cell, findings));
   });
+  failures.tell(progress);
 
   if (part) {
     print_result(fmt::format("{}: {} of {} cells, part {} of {}\n", options.output, scores.size(),

@@ -12,6 +12,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
+#include "bench/commands/failure_tally.hpp"
 #include "bench/commands/study_series.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
@@ -62,6 +63,7 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
   }
   require_archives(studies, folder, options.run, options.overwrite);
   std::vector<SweepRow> rows;
+  FailureTally failures;
   run_series(studies, options.run, progress, options.output, command_line,
              [&](std::size_t place, KeptRun run) {
                SweepRow& row = rows.emplace_back(SweepRow{.choice = variants[place]->choice,
@@ -71,9 +73,12 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
                                                           .findings = {}});
                if (run.campaign) {
                  row.healthy = run.campaign->basis.healthy;
-                 row.findings = findings_of(*run.campaign).rows;
+                 StudyFindings findings = findings_of(*run.campaign);
+                 failures.add(findings);
+                 row.findings = std::move(findings.rows);
                }
              });
+  failures.tell(progress);
   if (part) {
     print_result(fmt::format("{}: {} of {} studies, part {} of {}\n", options.output, rows.size(),
                              sweep.variants.size(), part->number, part->of));

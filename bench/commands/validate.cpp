@@ -69,7 +69,7 @@ double megabytes(const StudyForecast& forecast, double share) {
          static_cast<double>(forecast.bytes_of_a_loop);
 }
 
-std::string json_text(const Validation& found, int jobs) {
+std::string validation_json(const Validation& found, int jobs) {
   const StudyForecast& forecast = found.pilot.forecast;
   Json json{{"study", found.pilot.campaign.study.name},
             {"warnings", Json::array()},
@@ -99,7 +99,7 @@ std::string json_text(const Validation& found, int jobs) {
     json["warnings"].push_back({{"key", warning.key}, {"found", warning.found}, {"advice", warning.advice}});
   for (const StudyForecast::MethodCost& method : forecast.methods)
     json["methods"].push_back({{"name", method.method}, {"milliseconds", method.milliseconds}});
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 /// How far the number of worlds lets rates be known.
@@ -157,7 +157,8 @@ std::string text_of(const Validation& found, int jobs) {
 ExitCode validate(const ValidateArguments& arguments) {
   Progress progress(arguments.quiet);
   const Validation found = validated(arguments, progress);
-  print_result(arguments.json ? json_text(found, arguments.run.jobs) : text_of(found, arguments.run.jobs));
+  print_result(arguments.json ? validation_json(found, arguments.run.jobs)
+                              : text_of(found, arguments.run.jobs));
   return ExitCode::done;
 }
 

@@ -1,8 +1,10 @@
 #include "bench/parts/part_folder.hpp"
 
 #include <algorithm>
-#include <exception>
+#include <cstddef>
+#include <cstdint>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <span>
 #include <system_error>
@@ -14,6 +16,7 @@
 #include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/system/input_file.hpp"
+#include "base/system/json_entry.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "results/files/atomic_file.hpp"
@@ -25,35 +28,45 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kPartType = "mpmbench part";
+constexpr std::int64_t kMostWhole = std::numeric_limits<std::int64_t>::max();
+constexpr std::size_t kAnyLength = std::numeric_limits<std::size_t>::max();
 
-CampaignPart part_in(const Json& json, std::int64_t loops) {
+std::uint64_t seed_in(const JsonEntry& entry) {
+  entry.require(entry.json().is_number_unsigned(), "a whole number from 0 on");
+  return entry.json().get<std::uint64_t>();
+}
+
+CampaignPart part_in(const JsonEntry& entry, std::int64_t loops) {
   CampaignPart part;
-  if (const auto text = json.at("loops").get<std::string>(); !text.empty())
+  if (const std::string text = entry.at("loops").text(kAnyLength); !text.empty())
     part.loops = parse_loop_ranges(text, loops);
-  if (json.contains("shard"))
-    part.number = {json.at("shard").at("number").get<std::int64_t>(),
-                   json.at("shard").at("of").get<std::int64_t>(), ""};
+  if (entry.has("shard")) {
+    const JsonEntry shard = entry.at("shard");
+    const std::int64_t of = shard.at("of").whole(1, kMostWhole);
+    part.number = {shard.at("number").whole(1, of), of, ""};
+  }
   return part;
 }
 
-PartFolder part_folder_in(const Json& json, const fs::path& folder, const std::string& file) {
-  if (json.at("filetype") != kPartType)
-    throw InputError(fmt::format("{}: filetype", file), json.at("filetype").dump(), kPartType);
+PartFolder part_folder_in(const JsonEntry& entry, const fs::path& folder, const std::string& file) {
+  entry.require_keys({"filetype", "loops", "campaign_loops", "experiments", "seed", "methods", "solver",
+                      "audit_share", "store", "allow_unhealthy_basis", "scenario", "shard"});
+  entry.at("filetype").require(entry.at("filetype").json() == kPartType, kPartType);
   PartFolder part;
   part.path = folder;
-  part.study = parse_study(json.at("scenario").get<std::string>(), file);
-  part.study.seed = json.at("seed").get<std::uint64_t>();
-  part.study.methods = json.at("methods").get<std::vector<std::string>>();
+  part.study = parse_study(entry.at("scenario").text(kAnyLength), file);
+  part.study.seed = seed_in(entry.at("seed"));
+  part.study.methods = entry.at("methods").texts();
   RunOptions& options = part.options;
-  options.experiments = json.at("experiments").get<std::int64_t>();
+  options.experiments = entry.at("experiments").whole(1, kMostWhole);
   options.seed = part.study.seed;
   options.methods = part.study.methods;
-  options.solver = json.at("solver").get<std::string>();
-  options.audit_share = json.at("audit_share").get<double>();
-  options.store = store_policy(json.at("store").get<std::string>(), file + ": store");
-  options.allow_unhealthy_basis = json.at("allow_unhealthy_basis").get<bool>();
-  part.loops = json.at("campaign_loops").get<std::int64_t>();
-  part.part = part_in(json, part.loops);
+  options.solver = entry.at("solver").text();
+  options.audit_share = entry.at("audit_share").number(0.0, 1.0);
+  options.store = store_policy(entry.at("store").text(), file + ": store");
+  options.allow_unhealthy_basis = entry.at("allow_unhealthy_basis").flag();
+  part.loops = entry.at("campaign_loops").whole(1, kMostWhole);
+  part.part = part_in(entry, part.loops);
   return part;
 }
 
@@ -96,15 +109,9 @@ void write_part_description(const PartFolder& part) {
 PartFolder read_part(const fs::path& folder) {
   const std::string file = (folder / kCampaignDescription).string();
   std::ifstream stream = open_input(file, "a description of a part");
-  const std::string text = content_of(stream);
-  try {
-    return part_folder_in(Json::parse(text), folder, file);
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception& error) {
-    throw InputError(file, fmt::format("a file that does not describe a part ({})", error.what()),
-                     "the description that `mpmbench run` writes into a folder of shards");
-  }
+  const Json json = parsed_json(content_of(stream), file,
+                                "the description that `mpmbench run` writes into the folder of a part");
+  return part_folder_in({json, file}, folder, file);
 }
 
 std::set<fs::path> parts_in(const fs::path& folder) {

@@ -156,9 +156,10 @@ class Archive:
 
     def _repr_html_(self):
         kinds = self.experiments["kind"].to_series().value_counts(sort=False)
-        return (f"<p><b>{html.escape(self.attributes['title'])}</b><br>"
-                f"{html.escape(os.fspath(self.path.name))}: {', '.join(f'{n} {kind}' for kind, n in kinds.items())}; seed "
-                f"{self.attributes['master_seed']}</p>" + rate_table(self._intervals(), self.methods))
+        title, of = (html.escape(str(text)) for text in (
+            self.attributes["title"], f"{os.fspath(self.path.name)}: {', '.join(f'{n} {kind}' for kind, n in kinds.items())}; "
+                                      f"seed {self.attributes['master_seed']}"))
+        return f"<p><b>{title}</b><br>{of}</p>" + rate_table(self._intervals(), self.methods)
 
     def _intervals(self):
         found = self.findings

@@ -20,6 +20,11 @@ def new(*shape, size, **options):
     return figure, axes
 
 
+def plain(text):
+    """A name as it is: of an even number of '$' matplotlib would make a formula."""
+    return text.replace("$", r"\$")
+
+
 def loop(loop):
     """y, the model and the setpoint of each CV, then u and its target of each MV."""
     rows = [("cvs", i) for i in range(len(loop.cvs))] + [("mvs", i) for i in range(len(loop.mvs))]
@@ -34,10 +39,10 @@ def loop(loop):
             if values.size and numpy.isfinite(values[i]).any() and not (name == "y_set" and not values.any()):
                 axis.plot(loop.time, values[i], style, color=colour, linewidth=0.9, label=label)
         unit = "" if variable["unit"] == "1" else f"\n[{variable['unit']}]"
-        axis.set_ylabel(variable["name"] + unit, fontsize=9)
+        axis.set_ylabel(plain(variable["name"] + unit), fontsize=9)
         if place in (0, len(loop.cvs)):
             axis.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize=8, borderaxespad=0)
-    axes[-1, 0].set_xlabel(f"time [{loop.time_unit}]", fontsize=9)
+    axes[-1, 0].set_xlabel(plain(f"time [{loop.time_unit}]"), fontsize=9)
     return figure
 
 
@@ -109,9 +114,9 @@ def steps(repair):
     axis.plot(time, step_response(*old, time), "--", color=MEASURED, linewidth=1.4, label="model of the controller")
     axis.plot(time, step_response(*new_one, time), color=OWN, linewidth=1.4, label="corrected")
     units = {each["name"]: each["unit"] for kind in ("cvs", "mvs") for each in repair.context[kind]}
-    axis.set_xlabel(f"time [{repair.context['time_unit']}]", fontsize=9)
-    axis.set_ylabel(f"{repair.cv} [{units[repair.cv]}]", fontsize=9)
-    axis.set_title(f"Unit step of {repair.mv}", fontsize=10)
+    axis.set_xlabel(plain(f"time [{repair.context['time_unit']}]"), fontsize=9)
+    axis.set_ylabel(plain(f"{repair.cv} [{units[repair.cv]}]"), fontsize=9)
+    axis.set_title(plain(f"Unit step of {repair.mv}"), fontsize=10)
     axis.legend(frameon=False, fontsize=8)
     return figure
 

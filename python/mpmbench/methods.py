@@ -42,8 +42,12 @@ class Method:
     def __init__(self, function, *, needs, answers, numbers, name, title, verdict, learn, options=None):
         functools.update_wrapper(self, function)
         self.function, self.learn = function, learn
-        self.needs, self.answers, self.numbers = list(needs), list(answers), numbers
         self.name = name or function.__name__.strip("_").replace("<lambda>", "mine")
+        self.needs, self.answers = (texts(self.name, *each) for each in (("needs", needs), ("answers", answers)))
+        self.numbers = numbers
+        if not isinstance(numbers, dict) or not all(isinstance(scope, (str, tuple, list)) for scope in numbers.values()):
+            raise TypeError(f"method {self.name}: numbers: found {numbers!r}; allowed: {{name: scope}} or {{name: (scope, "
+                            "meaning, unit)}")
         first_line = (inspect.getdoc(function) or "").split("\n\n")[0].replace("\n", " ").rstrip(".")
         self.title, self.verdict = title or self.name, verdict or first_line or "as the function means it"
         self.options = dict(options or {})
@@ -87,6 +91,13 @@ def split(methods):
         if not isinstance(each, (str, Method)):
             raise TypeError(f"methods: found {each!r}; allowed: names, and functions with @mpmbench.method")
     return [each if isinstance(each, str) else each.name for each in methods], own
+
+
+def texts(name, key, given):
+    """The list under a key of a method. A text is one where a list of texts is meant."""
+    if isinstance(given, (list, tuple, set, frozenset)) and all(isinstance(each, str) for each in given):
+        return list(given)
+    raise TypeError(f"method {name}: {key}: found {given!r}; allowed: a list of texts, such as {['benchmark' if key == 'needs' else 'cv']}")
 
 
 class Session:
@@ -190,7 +201,7 @@ class Broker:
         self.file = folder / "methods.toml"
         # The code is an option, so that answers of another function are never taken for those of this one.
         self.file.write_text("".join(
-            f"[method.{name if name.isidentifier() else toml(name)}]\n"
+            f"[method.{toml(name)}]\n"
             f"command = {toml([sys.executable, '-I', '-S', str(relay), name])}\n"
             f"time_limit = {LONGEST_TIME}\noptions = {toml({**each.options, 'code': digest(each.function, each.learn)})}\n"
             for name, each in self.methods.items()), encoding="utf-8")

@@ -42,16 +42,26 @@ def program():
     named = os.environ.get("MPMBENCH_PROGRAM")
     if named:
         return named
-    here = pathlib.Path(__file__).resolve()
-    for folder in here.parents[1:]:
-        for place in "bin/mpmbench", "build/release/bench/mpmbench":
-            # of a prefix, only if this is its package: /usr/lib/python3/dist-packages and the like
-            if (folder / place).is_file() and (place.startswith("build") or "lib" in here.relative_to(folder).parts):
-                return str(folder / place)
+    place = beside(pathlib.Path(__file__).resolve().parent)
+    if place is not None and place.is_file():
+        return str(place)
     found = shutil.which("mpmbench")
     if found is None:
         raise FileNotFoundError("the program mpmbench is not in PATH; install it, or name it in MPMBENCH_PROGRAM")
     return found
+
+
+def beside(package):
+    """The place of the program in the tree or prefix that holds this folder of the package as one of its own, and in no
+    other folder above it, which may be somebody else's: TREE/python/mpmbench, or PREFIX/lib/python*/*-packages/mpmbench.
+    None where it is in neither."""
+    packages = package.parent
+    if packages.name == "python" and (packages.parent / "scenarios").is_dir() and (packages / "pyproject.toml").is_file():
+        return packages.parent / "build/release/bench/mpmbench"
+    if packages.name.endswith("-packages") and packages.parent.name.startswith("python") and \
+            packages.parent.parent.name.startswith("lib"):
+        return packages.parent.parent.parent / "bin/mpmbench"
+    return None
 
 
 def run(words, *, text=None, broker=None, quiet=False):

@@ -153,8 +153,9 @@ class Board(Rated):
         loops = sum(cell["experiments"] for cell in self.json["cells"])
         said = "".join(f"<br>{html.escape(self.standing(name))}" for name in self.json.get("own", []))
         plants, families = (", ".join(each["name"] for each in self.json[kind]) for kind in ("plants", "families"))
-        return (f"<p><b>Suite {self.json['suite']} {self.json['version']}</b>: {html.escape(plants)} under "
-                f"{html.escape(families)}; {loops} loops, seed {self.json['seed']}{said}</p>{super()._repr_html_()}")
+        suite = html.escape(f"{self.json['suite']} {self.json['version']}")
+        return (f"<p><b>Suite {suite}</b>: {html.escape(plants)} under {html.escape(families)}; {loops} loops, seed "
+                f"{self.json['seed']}{said}</p>{super()._repr_html_()}")
 
     def __repr__(self):
         return f"<mpmbench.Board of {self.json['suite']} {self.json['version']}: {', '.join(self.methods)}>"

@@ -11,6 +11,7 @@ SIGNALS = {"y": "cvs", "u": "mvs", "u_target": "mvs", "d": "mds", "y_sim": "cvs"
 
 class Loop:
     """A record of a closed loop. Arrays have one row a variable and one column a sample; NaN is a sample that is missing.
+    They are read-only: `loop.y.copy()` can be changed.
 
     | attribute | rows | what |
     |---|---|---|
@@ -69,6 +70,7 @@ class Loop:
         if rows is None or len(rows) == 0:
             rows = numpy.empty((0, len(self._signals["y"][0])))
         value = numpy.array(rows, float)  # null becomes NaN
+        value.flags.writeable = False  # methods share the benchmark, and each loop is that of all
         setattr(self, name, value)
         return value
 
@@ -83,7 +85,7 @@ class Loop:
             if value.size:
                 names = getattr(self, rows) if rows else [f"candidate {i + 1}" for i in range(len(value))]
                 dim = dims.get(rows, "candidate")
-                data[name] = ((dim, "time"), value)
+                data[name] = ((dim, "time"), value.copy())
                 data[dim] = (dim, names, {"variable_units": [units.get(each, "1") for each in names]})
         return data
 

@@ -1,13 +1,18 @@
 #include "results/archive/method_json.hpp"
 
 #include <array>
+#include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/method_messages.hpp"
+#include "base/error.hpp"
+#include "base/system/json_entry.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm {
@@ -28,36 +33,67 @@ const char* name_of(NumberScope scope) {
   return "";
 }
 
-NumberScope scope_of(const std::string& name) {
+NumberScope scope_of(const JsonEntry& entry) {
   for (const auto& [scope, known] : kScopes)
-    if (known == name)
+    if (known == entry.text())
       return scope;
-  throw std::invalid_argument(fmt::format("scope '{}'", name));
+  entry.refuse("loop, cv, channel, cv_lag or window");
 }
 
-AssessmentNumberInfo number_of(const Json& json) {
-  return {.name = json.at("name"),
-          .scope = scope_of(json.at("scope")),
-          .meaning = json.at("meaning"),
-          .unit = json.at("unit"),
-          .words = json.at("words"),
-          .summarised = json.at("summarised"),
-          .label = json.at("label"),
-          .estimates_ivar_basis = json.at("estimates_ivar_basis")};
+/// Of any length: this program has limited them when it wrote them.
+std::string whole_text(const JsonEntry& entry) {
+  return entry.text(std::numeric_limits<std::size_t>::max());
 }
 
-/// Archives of earlier programs say nothing of it.
-std::string origin_in(const Json& json) {
-  const auto origin = json.find("origin");
-  return origin == json.end() || origin->is_null() ? "" : origin->get<std::string>();
+AssessmentNumberInfo number_of(const JsonEntry& entry) {
+  return {.name = whole_text(entry.at("name")),
+          .scope = scope_of(entry.at("scope")),
+          .meaning = whole_text(entry.at("meaning")),
+          .unit = whole_text(entry.at("unit")),
+          .words = entry.at("words").texts(),
+          .summarised = entry.at("summarised").flag(),
+          .label = whole_text(entry.at("label")),
+          .estimates_ivar_basis = entry.at("estimates_ivar_basis").flag()};
 }
 
-/// Nor of this.
-std::optional<double> stated_in(const Json& json) {
-  const auto stated = json.find("stated_false_alarms");
-  if (stated == json.end() || stated->is_null())
-    return std::nullopt;
-  return stated->get<double>();
+/// What archives of earlier programs do not say.
+std::string text_or_nothing(const JsonEntry& entry, const char* key) {
+  const std::optional<JsonEntry> found = entry.find(key);
+  return found ? whole_text(*found) : "";
+}
+
+bool flag_or(const JsonEntry& entry, const char* key, bool fallback) {
+  return entry.has(key) ? entry.at(key).flag() : fallback;
+}
+
+MethodDescription description_in(const JsonEntry& entry) {
+  const JsonEntry needs = entry.at("needs"), answers = entry.at("answers");
+  const std::optional<JsonEntry> stated = entry.find("stated_false_alarms");
+  MethodDescription method{.name = whole_text(entry.at("name")),
+                           .title = whole_text(entry.at("title")),
+                           .verdict = whole_text(entry.at("verdict")),
+                           .requirements = {.setpoints = needs.at("setpoints").flag(),
+                                            .moving_setpoints = needs.at("moving_setpoints").flag(),
+                                            .benchmark = needs.at("benchmark").flag(),
+                                            .moving_mvs = needs.at("moving_mvs").flag(),
+                                            .nominal_loop = flag_or(needs, "nominal_loop", false),
+                                            .complete_record = flag_or(needs, "complete_record", true)},
+                           .locates_cvs = answers.at("cv").flag(),
+                           .names_channels = answers.at("channel").flag(),
+                           .tells_sources = answers.at("source").flag(),
+                           .names_mismatches = flag_or(answers, "mismatch", false),
+                           .names_candidates = flag_or(answers, "candidate", false),
+                           .stated_false_alarms = stated ? std::optional(stated->number()) : std::nullopt,
+                           .numbers = {},
+                           .origin = text_or_nothing(entry, "origin"),
+                           .fingerprint = text_or_nothing(entry, "fingerprint"),
+                           .given_options = text_or_nothing(entry, "given_options")};
+  const std::vector<JsonEntry> numbers = entry.at("numbers").list();
+  entry.at("numbers").require(numbers.size() <= kMostMethodNumbers,
+                              fmt::format("at most {}", kMostMethodNumbers));
+  for (const JsonEntry& number : numbers)
+    method.numbers.push_back(number_of(number));
+  return method;
 }
 
 }  // namespace
@@ -89,6 +125,8 @@ std::string method_description_json(const MethodDescription& method) {
   Json json = method_json(method);
   if (!method.fingerprint.empty())
     json["fingerprint"] = method.fingerprint;
+  if (!method.given_options.empty())
+    json["given_options"] = method.given_options;
   json["numbers"] = Json::array();
   for (const AssessmentNumberInfo& number : method.numbers)
     json["numbers"].push_back({{"name", number.name},
@@ -103,38 +141,12 @@ std::string method_description_json(const MethodDescription& method) {
 }
 
 MethodDescription method_description(const std::string& text, const std::string& file) {
+  const std::string place = fmt::format("{}: attribute 'description' of a method", file);
   try {
-    const Json json = Json::parse(text);
-    const Json& needs = json.at("needs");
-    const Json& answers = json.at("answers");
-    MethodDescription method{.name = json.at("name"),
-                             .title = json.at("title"),
-                             .verdict = json.at("verdict"),
-                             .requirements = {.setpoints = needs.at("setpoints"),
-                                              .moving_setpoints = needs.at("moving_setpoints"),
-                                              .benchmark = needs.at("benchmark"),
-                                              .moving_mvs = needs.at("moving_mvs"),
-                                              .nominal_loop = needs.value("nominal_loop", false),
-                                              .complete_record = needs.value("complete_record", true)},
-                             .locates_cvs = answers.at("cv"),
-                             .names_channels = answers.at("channel"),
-                             .tells_sources = answers.at("source"),
-                             .names_mismatches = answers.value("mismatch", false),
-                             .names_candidates = answers.value("candidate", false),
-                             .stated_false_alarms = stated_in(json),
-                             .numbers = {},
-                             .origin = origin_in(json),
-                             .fingerprint = json.value("fingerprint", "")};
-    if (const std::size_t count = json.at("numbers").size(); count > kMostMethodNumbers)
-      throw std::invalid_argument(fmt::format("{} numbers, more than {}", count, kMostMethodNumbers));
-    for (const Json& number : json.at("numbers"))
-      method.numbers.push_back(number_of(number));
-    return method;
-  } catch (const std::exception& error) {
-    throw ArchiveError(fmt::format(
-        "{}: attribute 'description' of a method: found {}; allowed: the description of a method as "
-        "JSON",
-        file, error.what()));
+    const Json json = parsed_json(text, place, "the description of a method as JSON");
+    return description_in({json, place});
+  } catch (const InputError& error) {
+    throw ArchiveError(error.what());
   }
 }
 

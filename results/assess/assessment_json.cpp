@@ -159,7 +159,7 @@ std::string assessment_json(const RecordAssessment& assessment) {
                           : Json{{"from", assessment.record.stamps[static_cast<std::size_t>(first)]},
                                  {"to", assessment.record.stamps[static_cast<std::size_t>(end - 1)]}};
   json["warnings"] = assessment.warnings;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace mpm

@@ -25,6 +25,7 @@
 #include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "analysis/methods/method_file.hpp"
 
 namespace mpm {
 namespace {
@@ -248,14 +249,9 @@ Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodD
 
 void require_name(const std::string& name) {
   const std::vector<std::string> known = assessment_method_names();
-  const auto is_fit = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-  };
-  if (name.empty() || !std::all_of(name.begin(), name.end(), is_fit) ||
-      std::find(known.begin(), known.end(), name) != known.end())
-    throw InputError(
-        "--verdicts", fmt::format("the name '{}'", name),
-        "NAME=FILE with letters, digits, '-' and '_' in a name that no method of this program has");
+  if (!is_method_name(name) || std::find(known.begin(), known.end(), name) != known.end())
+    throw InputError("--verdicts", fmt::format("the name '{}'", name),
+                     fmt::format("NAME=FILE with {}, which no method of this program has", kMethodNameRule));
 }
 
 MethodDescription description_of(const VerdictText& text, const std::string& name, const std::string& file) {

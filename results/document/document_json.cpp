@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "results/text/number_json.hpp"
+
 namespace mpm {
 
 std::string document_json(const Document& document) {
@@ -9,7 +11,7 @@ std::string document_json(const Document& document) {
   for (const Section& section : document.sections)
     if (section.data)
       section.data(json);
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 }  // namespace mpm

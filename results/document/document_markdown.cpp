@@ -1,13 +1,37 @@
 #include "results/document/document_markdown.hpp"
 
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "results/document/words.hpp"
+#include "results/plot/plot_text.hpp"
 
 namespace mpm {
 namespace {
+
+bool is_letter_or_digit(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+         static_cast<unsigned char>(c) >= 0x80;
+}
+
+/// Words that mean themselves. A '_' within a word and a '*' by itself do so without a '\\'.
+std::string words_markdown(std::string_view words) {
+  const std::string text = shown_text(words_text(words));
+  std::string escaped;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char before = i > 0 ? text[i - 1] : ' ', behind = i + 1 < text.size() ? text[i + 1] : ' ';
+    const bool is_plain = (text[i] == '_' && is_letter_or_digit(before) && is_letter_or_digit(behind)) ||
+                          (text[i] == '*' && before == ' ' && behind == ' ');
+    if (!is_plain && std::string_view("\\`*_[]<>|&~$").find(text[i]) != std::string_view::npos)
+      escaped += '\\';
+    escaped += text[i];
+  }
+  return escaped;
+}
 
 std::string number_markdown(const Number& number) {
   if (!std::isfinite(number.value))
@@ -20,14 +44,15 @@ std::string number_markdown(const Number& number) {
 
 std::string cell_markdown(const Cell& cell) {
   const Number* const number = std::get_if<Number>(&cell.content);
-  return (number != nullptr ? number_markdown(*number) : words_text(std::get<std::string>(cell.content))) +
+  return (number != nullptr ? number_markdown(*number)
+                            : words_markdown(std::get<std::string>(cell.content))) +
          cell.mark;
 }
 
 std::string table_markdown(const Table& table) {
   std::string head = "|", rule = "|", rows;
   for (const Table::Column& column : table.columns) {
-    head += fmt::format(" {} |", words_text(column.title));
+    head += fmt::format(" {} |", words_markdown(column.title));
     rule += "---|";
   }
   for (const Table::Row& row : table.rows) {
@@ -48,7 +73,7 @@ std::string document_markdown(const Document& document) {
       if (const Table* const table = std::get_if<Table>(&piece))
         text += table_markdown(*table);
       else if (const Paragraph* const paragraph = std::get_if<Paragraph>(&piece))
-        text += "\n" + words_text(paragraph->words) + "\n";
+        text += "\n" + words_markdown(paragraph->words) + "\n";
   return text;
 }
 

@@ -11,6 +11,7 @@
 #include "analysis/findings/leaderboard_standing.hpp"
 #include "analysis/findings/loop_outcome.hpp"
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/methods/method_table.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 
@@ -152,27 +153,53 @@ BaselineComparison compare_boards(const BoardRun& run, const FinishedBoard& base
                                   const std::string& path) {
   const std::string where = fmt::format("baseline {}", path);
   const std::vector<PairedCell> cells = paired_cells(run, baseline, where);
-  BaselineComparison comparison{path, baseline.runner(), {}, {}};
+  BaselineComparison comparison{path, baseline.runner(), {}};
+  std::vector<BaselineChanges> questions;
   bool in_common = false;
   for (std::size_t now = 0; now < run.board.methods.size(); ++now) {
     const std::string& method = run.board.methods[now];
     const auto found = std::find(baseline.methods.begin(), baseline.methods.end(), method);
-    if (found == baseline.methods.end())
+    if (found == baseline.methods.end()) {
+      comparison.not_compared.push_back(method);
       continue;
+    }
     in_common = true;
     for (const BoardQuestion& question : kBoardQuestions) {
       JudgementChanges changes =
           changes_of(cells, question, static_cast<std::size_t>(found - baseline.methods.begin()), now);
       if (changes.pairs > 0)
-        comparison.questions.push_back({fmt::format("{}.{}", method, question.name),
-                                        fmt::format("{}, {}", method, question.name), std::move(changes)});
+        questions.push_back({fmt::format("{}.{}", method, question.name),
+                             fmt::format("{}, {}", method, question.name), std::move(changes)});
     }
   }
   if (!in_common)
     throw InputError(
         where, fmt::format("{}", fmt::join(baseline.methods, ", ")),
         fmt::format("a run of one of the methods that are checked: {}", fmt::join(run.board.methods, ", ")));
+  comparison.questions = correct_questions(std::move(questions));
   return comparison;
+}
+
+/// Of a method on all cells that were run. The reason is that of the first loop without a verdict in a cell
+/// with a failure.
+VerdictFailures failures_of(const FinishedBoard& board, std::size_t method) {
+  VerdictFailures failures;
+  for (const CellScores& cell : board.cells)
+    if (cell.trouble.empty()) {
+      const MethodScores& scores = cell.methods[method];
+      failures.add(VerdictFailures{scores.failed, scores.of("answered")->hits + scores.failed,
+                                   scores.failed > 0 ? scores.reason : ""});
+    }
+  return failures;
+}
+
+/// Methods that this program does not have.
+void judge_outside_methods(const FinishedBoard& board, double minimum, std::vector<GateResult>& results) {
+  const std::vector<std::string> own = assessment_method_names();
+  for (std::size_t method = 0; method < board.methods.size(); ++method)
+    if (std::find(own.begin(), own.end(), board.methods[method]) == own.end())
+      if (auto answers = judge_answers(board.methods[method], failures_of(board, method), minimum))
+        results.push_back(*std::move(answers));
 }
 
 /// Of the methods of the run.
@@ -221,6 +248,7 @@ GateCheck check_gates(const BoardRun& run, const GateFile& file, const FinishedB
                    experiments, -kInfinity, static_cast<double>(file.maximum_failed)),
       judge_number("cells_not_run", "number of cells that could not be run", static_cast<double>(not_run),
                    cells, -kInfinity, 0.0)};
+  judge_outside_methods(run.board, file.minimum_answered, check.results);
   if (file.baseline)
     check.baseline = compare_boards(run, *baseline, file.baseline->archive.string());
   const JoinedBoard joined_board = joined(run, check.confidence);

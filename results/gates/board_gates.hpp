@@ -24,8 +24,9 @@ struct BoardRun {
 std::vector<Finding> gate_findings(const BoardRun& run);
 
 /// Judges a run of a suite. Beside the gates of the file, every run has the gates `experiments` (at least
-/// minimum_experiments), `failed` (at most maximum_failed) and `cells_not_run` (none). With [baseline], which
-/// `baseline` must then be, it also has `baseline.METHOD.QUESTION.p_worse` and `.lost`, as a campaign has,
+/// minimum_experiments), `failed` (at most maximum_failed), `cells_not_run` (none), and `answered.METHOD`
+/// (judge_answers()) for each method that this program does not have. With [baseline], which `baseline` must
+/// then be, it also has `baseline.METHOD.QUESTION.p_worse` and `.lost`, as a campaign has,
 /// for each method of both runs and each question that its outcomes answer:
 ///
 /// | question | loops                                      | right when                            |

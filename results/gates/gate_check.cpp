@@ -2,33 +2,42 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/findings/run_change.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
+#include "analysis/statistics/holm.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "results/archive/campaign_differences.hpp"
+#include "results/plot/plot_text.hpp"
+#include "results/text/experiment_text.hpp"
 
 namespace mpm {
 namespace {
 
-Question question_of(const Study& study, Correctness (Judgement::*of)() const) {
-  return [&study, of](const ExperimentRecord& record) {
-    const AssessmentRecord* const chain = record.diagnosed();
-    return chain == nullptr ? Correctness::not_judged : (judge(study, record, *chain).*of)();
-  };
+/// "METHOD.QUESTION", but for what a campaign was compared by before it had other methods.
+BaselineChanges baseline_changes(const Campaign& campaign, const MethodChange& method,
+                                 const VerdictChange& verdict) {
+  const std::string question = verdict.question->key;
+  if (diagnoses(*campaign.methods[method.now].form)) {
+    if (question == "located")
+      return {"located", "located", verdict.changes};
+    if (question == "source")
+      return {"source_recognised", "source recognised", verdict.changes};
+  }
+  return {fmt::format("{}.{}", method.name, question),
+          fmt::format("{}: {}", method.name, verdict.question->name), verdict.changes};
 }
 
 BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, const std::string& archive) {
   const AssessmentForms forms = forms_of(campaign), baseline_forms = forms_of(baseline);
   const StudyRun before = study_run(baseline, baseline_forms), now = study_run(campaign, forms);
   const std::string where = fmt::format("baseline {}", archive);
-  for (const Campaign* run : {&campaign, &baseline})
-    if (chain_place(*run) == run->methods.size())
-      throw InputError(
-          where, "no verdicts of the chain to compare in one of the two archives",
-          "two archives that a method with the diagnosis of the thesis, such as botelho, has assessed");
   const RunPairing pairing = pair_runs(before, now);
   if (!pairing.paired())
     throw InputError(where, "runs that cannot be paired: " + pairing.obstacle,
@@ -38,26 +47,34 @@ BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, c
   if (pairing.loops < static_cast<std::int64_t>(now.records.size()))
     throw InputError(where, fmt::format("{} of the experiments that are checked", pairing.loops),
                      fmt::format("all {}", now.records.size()));
-  const auto changes = [&](Correctness (Judgement::*of)() const) {
-    return judgement_changes({before.records, question_of(baseline.study, of)},
-                             {now.records, question_of(campaign.study, of)});
-  };
-  return {archive,
-          fmt::format("mpmbench {} ({}), solver {}", baseline.info.mpmbench_version,
-                      baseline.info.git_sha.empty() ? "unknown revision" : baseline.info.git_sha,
-                      baseline.info.solver),
-          baseline.study.source == campaign.study.source ? std::vector<StudyDifference>()
-                                                         : study_differences(baseline.study, campaign.study),
-          {{"located", "located", changes(&Judgement::location)},
-           {"source_recognised", "source recognised", changes(&Judgement::source)}}};
+  const std::vector<MethodChange> methods = verdict_changes(before, now);
+  if (methods.empty())
+    throw InputError(where, fmt::format("verdicts of {}", fmt::join(method_names(baseline), ", ")),
+                     fmt::format("those of one of the methods that are checked: {}",
+                                 fmt::join(method_names(campaign), ", ")));
+  BaselineComparison comparison{
+      archive,
+      fmt::format("mpmbench {} ({}), solver {}", baseline.info.mpmbench_version,
+                  baseline.info.git_sha.empty() ? "unknown revision" : baseline.info.git_sha,
+                  baseline.info.solver),
+      campaign_differences(baseline, campaign), methods_alone(baseline, campaign)};
+  for (std::string& method : methods_alone(campaign, baseline))
+    comparison.not_compared.push_back(std::move(method));
+  std::vector<BaselineChanges> questions;
+  for (const MethodChange& method : methods)
+    for (const VerdictChange& verdict : method.verdicts)
+      questions.push_back(baseline_changes(campaign, method, verdict));
+  comparison.questions = correct_questions(std::move(questions));
+  return comparison;
 }
 
 void judge_changes(const BaselineChanges& question, const BaselineLimits& limits,
                    std::vector<GateResult>& results) {
   const JudgementChanges& changes = question.changes;
   const std::string of = fmt::format("baseline.{}", question.name);
-  results.push_back(judge_number(of + ".p_worse", "exact p-value of lost against gained verdicts",
-                                 changes.test().p_worse, changes.pairs, limits.significance, kInfinity));
+  results.push_back(judge_number(of + ".p_worse",
+                                 "p-value of lost against gained verdicts, corrected for all questions",
+                                 question.p_worse, changes.pairs, limits.significance, kInfinity));
   if (limits.maximum_lost)
     results.push_back(judge_number(of + ".lost", "verdicts that were right in the baseline",
                                    static_cast<double>(changes.lost.size()), changes.pairs, -kInfinity,
@@ -90,6 +107,34 @@ std::vector<Finding> gate_findings(const Study& study) {
 
 std::vector<Finding> gate_findings(const Campaign& campaign) {
   return study_findings(campaign.study, forms_of(campaign), {}).rows;
+}
+
+std::vector<BaselineChanges> correct_questions(std::vector<BaselineChanges> questions) {
+  std::vector<double> p;
+  for (const BaselineChanges& question : questions)
+    if (question.changed())
+      p.push_back(question.changes.test().p_worse);
+  const std::vector<double> adjusted = holm_adjusted(p);
+  auto next = adjusted.begin();
+  for (BaselineChanges& question : questions)
+    question.p_worse = question.changed() ? *next++ : 1.0;
+  return questions;
+}
+
+std::optional<GateResult> judge_answers(const std::string& method, const VerdictFailures& failures,
+                                        double minimum) {
+  if (failures.asked == 0)
+    return std::nullopt;
+  const Finding finding{.name = fmt::format("answered.{}", method),
+                        .label = {},
+                        .meaning = "share of the loops on which it was asked that the method answered",
+                        .method = method,
+                        .has_interval = false};
+  Gate gate{.name = finding.name, .minimum = minimum};
+  gate.reason = finding.meaning;
+  if (failures.failed > 0)
+    gate.reason += "; it " + shown_text(failures_text(failures));
+  return judge(gate, finding.with(rate(failures.asked - failures.failed, failures.asked)));
 }
 
 GateResult judge_number(const std::string& name, const std::string& meaning, double value, std::int64_t count,
@@ -134,6 +179,10 @@ GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Camp
                    total.experiments, static_cast<double>(file.minimum_experiments), kInfinity),
       judge_number("failed", "number of experiments without a result", static_cast<double>(total.failed),
                    total.experiments, -kInfinity, static_cast<double>(file.maximum_failed))};
+  for (const MethodFindings& method : total.methods)
+    if (!method.form->method().origin.empty())
+      if (auto answers = judge_answers(method.name(), method.rates.failures, file.minimum_answered))
+        run.results.push_back(*std::move(answers));
   if (file.baseline)
     run.baseline = compare(campaign, *baseline, file.baseline->archive.string());
   return judge_gates(std::move(run), file, total.rows);

@@ -7,6 +7,7 @@
 
 #include "analysis/findings/gate.hpp"
 #include "analysis/findings/judgement_changes.hpp"
+#include "analysis/findings/method_rates.hpp"
 #include "analysis/study_files/study_differences.hpp"
 #include "results/archive/campaign.hpp"
 #include "results/gates/gate_file.hpp"
@@ -18,14 +19,21 @@ struct BaselineChanges {
   std::string name;   ///< in the names of gates: "located", "METHOD.located"
   std::string title;  ///< for people: "source recognised"
   JudgementChanges changes;
+  /// McNemarTest::p_worse, corrected by Holm for the questions of which some verdict changed. One of which
+  /// none did is no test that could fail (Tarone 1990, "A modified Bonferroni method for discrete data",
+  /// Biometrics 46, 515-522).
+  double p_worse = 1.0;
+
+  bool changed() const { return !changes.lost.empty() || !changes.gained.empty(); }
 };
 
 /// How the verdicts on the experiments of a run differ from those of its baseline.
 struct BaselineComparison {
-  std::string path;                     ///< of the baseline
-  std::string run_by;                   ///< "mpmbench 1.0 (revision), solver auto"
-  std::vector<StudyDifference> edited;  ///< keys of the study that have other values
-  std::vector<BaselineChanges> questions;
+  std::string path;                             ///< of the baseline
+  std::string run_by;                           ///< "mpmbench 1.0 (revision), solver auto"
+  std::vector<StudyDifference> edited;          ///< campaign_differences(); none of a suite
+  std::vector<std::string> not_compared = {};   ///< methods that only one of the two has
+  std::vector<BaselineChanges> questions = {};  ///< by correct_questions()
 
   /// The changes that a gate on the baseline is about; null for any other gate.
   const BaselineChanges* of(const GateResult& result) const;
@@ -52,6 +60,14 @@ struct GateCheck {
 std::vector<Finding> gate_findings(const Study& study);
 std::vector<Finding> gate_findings(const Campaign& campaign);
 
+/// Sets BaselineChanges::p_worse of each.
+std::vector<BaselineChanges> correct_questions(std::vector<BaselineChanges> questions);
+
+/// The gate `answered.METHOD` that no file names: a method from outside has answered at least the share
+/// `minimum` of the loops on which it was asked. None where it was asked on none.
+std::optional<GateResult> judge_answers(const std::string& method, const VerdictFailures& failures,
+                                        double minimum);
+
 /// A gate that no file names, on a number of so many experiments.
 GateResult judge_number(const std::string& name, const std::string& meaning, double value, std::int64_t count,
                         double minimum, double maximum);
@@ -61,13 +77,15 @@ GateResult judge_number(const std::string& name, const std::string& meaning, dou
 GateCheck judge_gates(GateCheck run, const GateFile& file, const std::vector<Finding>& findings);
 
 /// Judges a campaign. Beside the gates of the file, every campaign has the gates `self_check` (the basis case
-/// is healthy), `experiments` (at least minimum_experiments) and `failed` (at most maximum_failed). With
-/// [baseline], which `baseline` must then be, it also has `baseline.located.p_worse` (at least the
-/// significance), `baseline.located.lost` (at most maximum_lost) and the same of `source_recognised`. Each
-/// run is judged by its own study.
+/// is healthy), `experiments` (at least minimum_experiments), `failed` (at most maximum_failed), and
+/// `answered.METHOD` (judge_answers()) for each method with an origin. With [baseline], which `baseline` must
+/// then be, it also has, for each method of both and each of verdict_questions() that was judged,
+/// `baseline.METHOD.QUESTION.p_worse` (at least the significance) and `baseline.METHOD.QUESTION.lost` (at
+/// most maximum_lost). Two questions of the method that diagnoses have names from before there were others:
+/// `baseline.located` and `baseline.source_recognised`. Each run is judged by its own study.
 ///
-/// Errors: InputError unless the baseline can be paired with the campaign (pair_runs()) and has all of its
-/// experiments, and a method that diagnoses has assessed both.
+/// Errors: InputError unless the baseline can be paired with the campaign (pair_runs()), has all of its
+/// experiments, and has a method in common with it.
 GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Campaign* baseline = nullptr);
 
 }  // namespace mpm

@@ -100,8 +100,10 @@ OptionKeys baseline_keys(BaselineLimits& limits, const std::filesystem::path& fo
               .allow("a path, relative to the gate file")
               .read(read_archive),
           key::number("significance", limits.significance, NumberRule::inside(0, 1),
-                      "smallest p-value that does not count as a regression"),
-          key::option("maximum_lost", "whole number", "verdicts of each kind that may be lost")
+                      "smallest p-value, corrected for the number of questions, that does not count as a "
+                      "regression"),
+          key::option("maximum_lost", "whole number",
+                      "right verdicts of each method on each question that may be lost")
               .otherwise("no limit")
               .allow("0 to 2147483647")
               .read(read_lost)};
@@ -122,28 +124,31 @@ OptionKeys gate_file_keys(GateFile& file, const std::vector<Finding>& findings,
     if (!document.has("baseline"))
       document.require("gate", "a list of tables, one or more");
   };
-  return {key::choice("inconclusive", file.inconclusive, {"fail", "pass"},
-                      "whether an inconclusive gate fails the check"),
-          key::option("confidence", "number", "confidence of all intervals")
-              .otherwise("that of the study")
-              .allow("between 0 and 1")
-              .read([&file](const TomlTable& document, const std::string& key) {
-                file.confidence = read_number(document, key, NumberRule::inside(0, 1));
-              }),
-          key::whole("maximum_failed", file.maximum_failed, 0, kMaxCount,
-                     "number of experiments that may lack a result (infeasible ones do not count)"),
-          key::whole("minimum_experiments", file.minimum_experiments, 1, kMaxCount,
-                     "experiments that the campaign must have"),
-          key::list<Gate>(
-              "gate", kMaxGates, [&findings](Gate& gate) { return gate_keys(gate, findings); },
-              [&file](const TomlTable&, Gate& gate) { file.gates.push_back(std::move(gate)); }, "the gates")
-              .otherwise("required, unless there is a `[baseline]`")
-              .allow("one or more")
-              .after(require_gates),
-          key::option("baseline", "table", "an earlier run to compare with")
-              .otherwise("none")
-              .with("", below_baseline)
-              .read(read_baseline)};
+  return {
+      key::choice("inconclusive", file.inconclusive, {"fail", "pass"},
+                  "whether an inconclusive gate fails the check"),
+      key::option("confidence", "number", "confidence of all intervals")
+          .otherwise("that of the study")
+          .allow("between 0 and 1")
+          .read([&file](const TomlTable& document, const std::string& key) {
+            file.confidence = read_number(document, key, NumberRule::inside(0, 1));
+          }),
+      key::whole("maximum_failed", file.maximum_failed, 0, kMaxCount,
+                 "number of experiments that may lack a result (infeasible ones do not count)"),
+      key::whole("minimum_experiments", file.minimum_experiments, 1, kMaxCount,
+                 "experiments that the campaign must have"),
+      key::number("minimum_answered", file.minimum_answered, NumberRule::share(),
+                  "share of the loops on which a method from outside was asked that it must have answered"),
+      key::list<Gate>(
+          "gate", kMaxGates, [&findings](Gate& gate) { return gate_keys(gate, findings); },
+          [&file](const TomlTable&, Gate& gate) { file.gates.push_back(std::move(gate)); }, "the gates")
+          .otherwise("required, unless there is a `[baseline]`")
+          .allow("one or more")
+          .after(require_gates),
+      key::option("baseline", "table", "an earlier run to compare with")
+          .otherwise("none")
+          .with("", below_baseline)
+          .read(read_baseline)};
 }
 
 }  // namespace

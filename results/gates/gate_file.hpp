@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/findings/gate.hpp"
+#include "analysis/findings/method_rates.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
@@ -18,7 +19,7 @@ enum class InconclusivePolicy { fail, pass };
 /// [baseline]: an earlier run, and how far the verdicts may fall behind it.
 struct BaselineLimits {
   std::filesystem::path archive;  ///< or the folder or board of a suite
-  /// Smallest exact p-value (McNemarTest::p_worse) of lost and gained verdicts that is no regression.
+  /// Smallest p-value (BaselineChanges::p_worse) of lost and gained verdicts that is no regression.
   double significance = 0.05;
   std::optional<std::int64_t> maximum_lost;  ///< verdicts of each question; no limit without it
 };
@@ -29,6 +30,7 @@ struct GateFile {
   std::optional<double> confidence;  ///< of the intervals; without it that of the study
   std::int64_t maximum_failed = 0;   ///< experiments without a result
   std::int64_t minimum_experiments = 1;
+  double minimum_answered = kFewestAnswers;  ///< of the loops on which a method from outside was asked
   std::vector<Gate> gates;
   std::optional<BaselineLimits> baseline;
 };

@@ -60,6 +60,13 @@ std::string gates_junit(const GateCheck& check, const std::string& archive) {
   add_property(properties, "archive", archive);
   for (const auto& [name, value] : check.properties)
     add_property(properties, name, value);
+  if (check.baseline) {
+    add_property(properties, "baseline", check.baseline->path);
+    for (const StudyDifference& each : check.baseline->edited)
+      add_property(properties, "changed since: " + each.key, difference_text(each));
+    for (const std::string& method : check.baseline->not_compared)
+      add_property(properties, "not compared", method);
+  }
   for (const GateResult& result : check.results)
     add_case(suite, check, result);
 

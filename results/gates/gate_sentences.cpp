@@ -93,6 +93,11 @@ std::string explanation(const GateResult& result, double confidence) {
                      outcome_sentence(result, confidence), reason);
 }
 
+std::string difference_text(const StudyDifference& difference) {
+  const auto value = [](const std::string& of) { return of.empty() ? "not there" : of; };
+  return fmt::format("{} -> {}", value(difference.before), value(difference.now));
+}
+
 std::string changes_text(const JudgementChanges& changes) {
   std::string text;
   for (const auto* list : {&changes.lost, &changes.gained})

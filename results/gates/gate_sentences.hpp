@@ -20,6 +20,9 @@ std::string margin_text(const GateResult& result);
 /// The outcome in a sentence, with the number, the limit and the reason of the limit.
 std::string explanation(const GateResult& result, double confidence);
 
+/// The values of a key that differs: "0.1 -> 0.9"; "not there" where a run does not have it.
+std::string difference_text(const StudyDifference& difference);
+
 /// The experiments whose verdicts changed, one a line: "     17  lost    right -> wrong".
 std::string changes_text(const JudgementChanges& changes);
 

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "results/document/document_text.hpp"
 #include "results/gates/gate_report.hpp"
@@ -30,28 +33,33 @@ std::string gate_table(const GateCheck& check) {
 
 std::string changes_heading(const BaselineChanges& question) {
   const JudgementChanges& changes = question.changes;
-  const McNemarTest test = changes.test();
-  return fmt::format("{}: {} lost, {} gained among {} experiments, p = {:.3g} (two-sided {:.3g})\n",
-                     question.title, changes.lost.size(), changes.gained.size(), changes.pairs, test.p_worse,
-                     test.p_two_sided);
+  return fmt::format("{}: {} lost, {} gained among {} experiments, p = {:.3g}, corrected {:.3g}\n",
+                     question.title, changes.lost.size(), changes.gained.size(), changes.pairs,
+                     changes.test().p_worse, question.p_worse);
 }
 
-/// The keys that differ, a line each: "  diagnosis.mpm_threshold: 0.1 -> 0.9".
+/// The keys that differ, a line each, and the methods that are in one of the two only.
 std::string edited_text(const BaselineComparison& baseline) {
-  if (baseline.edited.empty())
-    return "";
-  std::string text = "the study was edited since:\n";
+  std::string text = baseline.edited.empty() ? "" : "changed since:\n";
   for (const StudyDifference& each : baseline.edited)
-    text += fmt::format("  {}: {} -> {}\n", each.key, each.before.empty() ? "not there" : each.before,
-                        each.now.empty() ? "not there" : each.now);
+    text += fmt::format("  {}: {}\n", each.key, difference_text(each));
+  if (!baseline.not_compared.empty())
+    text += fmt::format("not compared, since only one of the two has it: {}\n",
+                        fmt::join(baseline.not_compared, ", "));
   return text;
 }
 
 std::string baseline_text(const BaselineComparison& baseline) {
   std::string text = fmt::format("\nagainst the baseline {} ({}):\n{}", baseline.path, baseline.run_by,
                                  edited_text(baseline));
+  std::vector<std::string> unchanged;
   for (const BaselineChanges& each : baseline.questions)
-    text += changes_heading(each) + changes_text(each.changes);
+    if (each.changed())
+      text += changes_heading(each) + changes_text(each.changes);
+    else
+      unchanged.push_back(each.name);
+  if (!unchanged.empty())
+    text += fmt::format("no verdict changed: {}\n", fmt::join(unchanged, ", "));
   return text;
 }
 

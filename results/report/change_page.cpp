@@ -4,9 +4,11 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/findings/run_change.hpp"
 #include "analysis/study_files/study_differences.hpp"
+#include "results/archive/campaign_differences.hpp"
 #include "results/document/document_html.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/change_report.hpp"
@@ -115,19 +117,16 @@ Section changes_section(const Change& change) {
   return section;
 }
 
-/// Methods of `campaign` that `other` has not.
-std::string methods_alone(const Campaign& campaign, const Campaign& other) {
-  const std::vector<std::string> others = method_names(other);
-  std::vector<std::string> names = method_names(campaign);
-  std::erase_if(
-      names, [&](const auto& name) { return std::find(others.begin(), others.end(), name) != others.end(); });
-  return listed(names, "none");
+std::string listed_or_none(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 Section studies_section(const Change& change) {
   Section section{"studies", "What differs between the studies?"};
   Table table(
-      "What ran, and the keys of the study whose values differ, including defaults. Differences are marked.",
+      "What ran, and the keys of the study and of methods from outside whose values differ, including "
+      "defaults "
+      "of the study. Differences are marked.",
       {{"", Table::Align::left}, {"A", Table::Align::left}, {"B", Table::Align::left}});
   const Campaign &a = change.before, &b = change.now;
   const auto row = [&](const char* what, const std::string& before, const std::string& now) {
@@ -142,9 +141,10 @@ Section studies_section(const Change& change) {
   row("solver", a.info.solver, b.info.solver);
   row("programs and FMUs", a.info.outside_files, b.info.outside_files);
   row("finished", a.info.created, b.info.created);
-  row("methods here alone", methods_alone(a, b), methods_alone(b, a));
-  const std::vector<StudyDifference> differences = study_differences(a.study, b.study);
-  table.group(differences.empty() ? "No key of the study differs" : "Keys of the study that differ");
+  row("methods here alone", listed_or_none(methods_alone(a, b)), listed_or_none(methods_alone(b, a)));
+  const std::vector<StudyDifference> differences = campaign_differences(a, b);
+  table.group(differences.empty() ? "No key of the study or of a method from outside differs"
+                                  : "Keys of the study and of methods from outside that differ");
   const auto value = [](const std::string& of) { return of.empty() ? "not there" : code(of); };
   for (const StudyDifference& each : differences)
     table.row({Cell(code(each.key)).toned(Cell::Tone::strong), value(each.before), value(each.now)});

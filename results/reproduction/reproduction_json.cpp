@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/reproduction/reproduction.hpp"
+#include "results/text/number_json.hpp"
 
 namespace mpm {
 namespace {
@@ -83,7 +84,7 @@ std::string reproduction_json(const std::vector<ReproducedTable>& tables,
   json["tables"] = tables_json(tables);
   json["agreeing"] = total.agreeing;
   json["judged"] = total.judged;
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 std::string reproduction_json(const std::vector<SeededTable>& tables,
@@ -99,7 +100,7 @@ std::string reproduction_json(const std::vector<SeededTable>& tables,
                           {"tables", tables_json(tables)},
                           {"judged", judged},
                           {"mean_agreeing", agreeing}};
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 }  // namespace mpm

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "results/files/csv_text.hpp"
+#include "results/plot/plot_text.hpp"
 #include "results/suite/leaderboard_output.hpp"
 
 namespace mpm {
@@ -32,13 +34,25 @@ std::string csv_number(double value) {
   return std::isnan(value) ? "" : fmt::format("{}", value);
 }
 
+/// In one line.
 std::string latex_text(const std::string& text) {
   std::string escaped;
-  for (const char letter : text) {
-    if (std::string_view("&%$#_{}").find(letter) != std::string_view::npos)
-      escaped += '\\';
-    escaped += letter;
-  }
+  for (const char letter : shown_text(text))
+    switch (letter) {
+      case '\\':
+        escaped += "\\textbackslash{}";
+        break;
+      case '^':
+        escaped += "\\textasciicircum{}";
+        break;
+      case '~':
+        escaped += "\\textasciitilde{}";
+        break;
+      default:
+        if (std::string_view("&%$#_{}").find(letter) != std::string_view::npos)
+          escaped += '\\';
+        escaped += letter;
+    }
   return escaped;
 }
 
@@ -103,7 +117,7 @@ std::string leaderboard_csv(const Leaderboard& board) {
   for (const BoardColumn& column : columns)
     text += fmt::format(",{0},{0}_lower,{0}_upper,{0}_loops", column.name);
   for (const std::size_t method : board_order(board)) {
-    text += fmt::format("\n{},{}", board.methods[method], board.is_own(method) ? 1 : 0);
+    text += fmt::format("\n{},{}", csv_field(board.methods[method]), board.is_own(method) ? 1 : 0);
     for (const BoardColumn& column : columns) {
       const Number number = board_number(board, method, column);
       text += fmt::format(",{},{},{},{}", csv_number(number.value), csv_number(number.interval.lower),
@@ -121,8 +135,8 @@ std::string leaderboard_latex(const Leaderboard& board) {
       "% \\usepackage{{booktabs}}\n\\begingroup\\small\\setlength{{\\tabcolsep}}{{3pt}}% fits the text of "
       "article\n"
       "\\begin{{tabular}}{{l{}}}\n\\toprule\nMethod",
-      board.suite, board.version, board.seed, board.program, 100 * board.confidence, 100 * kFewestAnswers,
-      std::string(columns.size(), 'r'));
+      latex_text(board.suite), latex_text(board.version), board.seed, latex_text(board.program),
+      100 * board.confidence, 100 * kFewestAnswers, std::string(columns.size(), 'r'));
   for (const BoardColumn& column : columns)
     text += " & " + latex_heading(column.title);
   text += " \\\\\n\\midrule\n";

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -15,13 +14,17 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/methods/method_file.hpp"
 #include "analysis/statistics/clustered_rate.hpp"
 #include "analysis/study_files/resolved_study.hpp"
 #include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "base/sha256.hpp"
 #include "base/system/foreign_text.hpp"
+#include "base/system/json_entry.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "scenarios/loop/draw.hpp"
 
 namespace mpm {
 namespace {
@@ -31,7 +34,7 @@ using BoardJson = nlohmann::ordered_json;
 constexpr const char* kBoardEnding = ".board.json";
 constexpr const char* kFormat = "mpmbench board 1";
 constexpr auto kReplace = BoardJson::error_handler_t::replace;  // what is no UTF-8
-constexpr std::size_t kLongestWord = 2000;                      // bytes of a name or a reason
+constexpr std::int64_t kMostLoops = 100'000;                    // of a cell
 constexpr const char* kRepairGains[] = {kRankingRepair.data(), "repair_gain_share"};
 constexpr const char* kDelays[] = {"detection_delay", "false_alarms_a_day"};
 
@@ -75,6 +78,8 @@ BoardJson scores_json(const CellScores& cell, const MethodScores& scores) {
     json["at_05"] = true;
   if (scores.scope.at_chosen)
     json["at_chosen"] = true;
+  if (scores.failed > 0)
+    json["failed"] = scores.failed;
   if (!scores.reason.empty())
     json["reason"] = proper_utf8(scores.reason);
   for (const char* const name : kRepairGains)
@@ -124,136 +129,127 @@ BoardJson methods_json(const Leaderboard& board) {
 
 // What is read.
 
-/// A value of the file, and where it stands.
-class BoardEntry {
- public:
-  BoardEntry(const BoardJson& value, std::string place) : value_(value), place_(std::move(place)) {}
+/// Printable ASCII, for terminals, pages and tables.
+std::string words_in(const JsonEntry& entry) {
+  return foreign_text(entry.text(), JsonEntry::kMostText);
+}
 
-  [[noreturn]] void refuse(const std::string& allowed) const {
-    throw InputError(place_,
-                     value_.is_structured() ? fmt::format("{} of {}", value_.type_name(), value_.size())
-                                            : foreign_text(value_.dump(-1, ' ', true, kReplace), kShownBytes),
-                     allowed);
-  }
+/// As rounded() writes it.
+double rounded_in(const JsonEntry& entry) {
+  if (entry.json().is_null())
+    return kNaN;
+  if (entry.json() == "Infinity" || entry.json() == "-Infinity")
+    return entry.json() == "Infinity" ? kInfinity : -kInfinity;
+  entry.require(entry.json().is_number(), "a number, null, \"Infinity\" or \"-Infinity\"");
+  return entry.number();
+}
 
-  void require_keys(const std::vector<std::string>& known) const {
-    if (!value_.is_object())
-      refuse("an object");
-    for (const auto& item : value_.items())
-      if (std::find(known.begin(), known.end(), item.key()) == known.end())
-        throw InputError(place_, fmt::format("the unknown key '{}'", foreign_text(item.key(), kShownBytes)),
-                         fmt::format("{}", fmt::join(known, ", ")));
-  }
-  bool has(const char* key) const { return value_.contains(key); }
-  BoardEntry at(const std::string& key) const {
-    if (!value_.is_object() || !value_.contains(key))
-      throw InputError(place_, fmt::format("no '{}'", foreign_text(key, kShownBytes)), "an object with it");
-    return {value_.at(key), fmt::format("{}: {}", place_, key)};
-  }
-  std::vector<BoardEntry> list() const {
-    if (!value_.is_array())
-      refuse("a list");
-    std::vector<BoardEntry> entries;
-    for (std::size_t i = 0; i < value_.size(); ++i)
-      entries.emplace_back(value_[i], fmt::format("{}[{}]", place_, i));
-    return entries;
-  }
-  std::string text() const {
-    if (!value_.is_string() || value_.get_ref<const std::string&>().size() > kLongestWord)
-      refuse(fmt::format("a text of at most {} bytes", kLongestWord));
-    return foreign_text(value_.get<std::string>(), kLongestWord);
-  }
-  bool flag() const {
-    if (!value_.is_boolean())
-      refuse("true or false");
-    return value_.get<bool>();
-  }
-  std::int64_t whole(std::int64_t least = 0) const {
-    constexpr std::int64_t kMost = std::int64_t{1} << 53U;
-    if (!value_.is_number_integer() || (value_.is_number_unsigned() && value_.get<std::uint64_t>() > kMost) ||
-        value_.get<std::int64_t>() < least || value_.get<std::int64_t>() > kMost)
-      refuse(fmt::format("a whole number from {} on", least));
-    return value_.get<std::int64_t>();
-  }
-  /// As rounded() writes it.
-  double number() const {
-    if (value_.is_null())
-      return kNaN;
-    if (value_ == "Infinity" || value_ == "-Infinity")
-      return (value_ == "Infinity" ? 1 : -1) * std::numeric_limits<double>::infinity();
-    if (!value_.is_number() || !std::isfinite(value_.get<double>()))
-      refuse("a number, null, \"Infinity\" or \"-Infinity\"");
-    return value_.get<double>();
-  }
-  /// One letter a loop, each of which `is_known`.
-  std::string letters(const std::function<bool(char)>& is_known, const char* what) const {
-    if (!value_.is_string())
-      refuse("a text with a letter for each loop");
-    auto letters = value_.get<std::string>();
-    for (std::size_t i = 0; i < letters.size(); ++i)
-      if (letters[i] != kNoLoop && !is_known(letters[i]))
-        throw InputError(fmt::format("{}, loop {}", place_, i),
-                         fmt::format("'{}'", foreign_text(letters.substr(i, 1), kShownBytes)),
-                         fmt::format("{}, or '{}'", what, kNoLoop));
-    return letters;
-  }
-  void require(bool holds, const std::string& allowed) const {
-    if (!holds)
-      refuse(allowed);
-  }
+/// One letter for each of so many loops; of a loop that was assessed one that `fits`.
+std::string letters_in(const JsonEntry& entry, std::size_t loops,
+                       const std::function<bool(std::size_t loop, char letter)>& fits, const char* what) {
+  entry.require(entry.json().is_string() && entry.json().get_ref<const std::string&>().size() == loops,
+                fmt::format("a text of {} letters, one for each loop", loops));
+  const auto letters = entry.json().get<std::string>();
+  for (std::size_t i = 0; i < letters.size(); ++i)
+    if (letters[i] != kNoLoop && !fits(i, letters[i]))
+      throw InputError(fmt::format("{}, loop {}", entry.place(), i),
+                       fmt::format("'{}'", foreign_text(letters.substr(i, 1), kShownBytes)),
+                       fmt::format("{}, or '{}'", what, kNoLoop));
+  return letters;
+}
 
- private:
-  const BoardJson& value_;
-  std::string place_;
+/// What the suite draws for the loops of a cell: all of their truth but what they cost.
+struct DrawnLoops {
+  std::vector<FaultTruth> truths = {};  ///< without `impact`
+  std::vector<int> worlds = {};
 };
 
-Estimate gain_in(const BoardEntry& entry, double confidence) {
+DrawnLoops drawn_loops(const Study& study, std::int64_t experiments) {
+  DrawnLoops drawn;
+  for (std::int64_t i = 0; i < experiments; ++i) {
+    const ExperimentDraw draw = draw_experiment(study, i);
+    drawn.truths.push_back({.kind = draw.kind, .one_cv = !is_faultless(draw.kind) && draw.true_cv() >= 0});
+    drawn.worlds.push_back(draw.world);
+  }
+  return drawn;
+}
+
+/// [sum, number of values] of each world.
+Estimate gain_in(const JsonEntry& entry, const CellScores& cell, double confidence) {
+  std::vector<std::int64_t> most;  // of the loops with an impact, of each world
+  for (std::size_t i = 0; i < cell.truths.size(); ++i) {
+    const auto world = static_cast<std::size_t>(std::int64_t{cell.worlds[i]} + 1);
+    most.resize(std::max(most.size(), world + 1));
+    most[world] += cell.truths[i] != kNoLoop && fault_truth(cell.truths[i])->impact ? 1 : 0;
+  }
+  const std::vector<JsonEntry> list = entry.list();
+  entry.require(list.size() <= most.size(), fmt::format("at most {}, one for each world", most.size()));
   std::vector<ClusterSum> clusters;
-  for (const BoardEntry& cluster : entry.list()) {
-    const std::vector<BoardEntry> pair = cluster.list();
+  for (const JsonEntry& cluster : list) {
+    const std::vector<JsonEntry> pair = cluster.list();
     cluster.require(pair.size() == 2, "a sum and the number of its values");
-    const double sum = pair[0].number();
-    const std::int64_t count = pair[1].whole();
+    const std::int64_t count = pair[1].whole(0, most[clusters.size()]);
     // Each value is a share between 0 and 1; sums are rounded.
-    pair[0].require(sum >= 0 && sum <= static_cast<double>(count) * 1.001,
-                    fmt::format("a sum of {} shares between 0 and 1", count));
+    const double sum = pair[0].number(0.0, static_cast<double>(count) * 1.001);
     clusters.push_back({sum, count});
   }
   return clustered_mean(std::move(clusters), confidence);
 }
 
-Estimate delay_in(const BoardEntry& entry) {
-  const std::vector<BoardEntry> parts = entry.list();
+/// Of a cell in which methods watch moving windows.
+Estimate delay_in(const JsonEntry& entry, const Study& study, std::size_t loops) {
+  entry.require(study.monitoring.has_value(), "nothing: the cell has no moving windows");
+  const std::vector<JsonEntry> parts = entry.list();
   entry.require(parts.size() == 4, "a value, both ends of its interval, and the number of loops");
-  return {parts[0].number(), {parts[1].number(), parts[2].number()}, parts[3].whole()};
+  const std::int64_t most =
+      static_cast<std::int64_t>(loops) * study.monitoring->count(study.simulation.samples);
+  const Estimate delay{
+      rounded_in(parts[0]), {rounded_in(parts[1]), rounded_in(parts[2])}, parts[3].whole(1, most)};
+  parts[0].require(delay.value >= 0.0, "a number from 0 on, or \"Infinity\"");
+  const auto& [lower, upper] = delay.interval;
+  entry.require(!(lower < 0.0) && !(lower > delay.value) && !(upper < delay.value),
+                "an interval that holds the value");
+  return delay;
 }
 
-MethodScores scores_in(const BoardEntry& entry, const CellScores& cell, OutcomeScope scope,
-                       double confidence) {
-  entry.require_keys(
-      {"outcomes", "at_05", "at_chosen", "reason", kRepairGains[0], kRepairGains[1], kDelays[0], kDelays[1]});
-  scope.at_05 = entry.has("at_05") && entry.at("at_05").flag();
-  scope.at_chosen = entry.has("at_chosen") && entry.at("at_chosen").flag();
+/// Does the answer say nothing that such a method cannot, and nothing right of what is not there?
+bool may_be_said(const LoopOutcome& outcome, const FaultTruth& truth, const OutcomeScope& scope) {
+  return (!outcome.above_05 || scope.at_05) && (!outcome.above_chosen || scope.at_chosen) &&
+         (!outcome.right_cv || (truth.one_cv && scope.locates_cvs)) &&
+         (!outcome.right_source || (truth.faulty() && scope.tells_sources));
+}
+
+MethodScores scores_in(const JsonEntry& entry, const CellScores& cell, const Study& study,
+                       OutcomeScope scope) {
+  entry.require_keys({"outcomes", "at_05", "at_chosen", "failed", "reason", kRepairGains[0], kRepairGains[1],
+                      kDelays[0], kDelays[1]});
+  for (const auto& [key, flag] :
+       {std::pair("at_05", &OutcomeScope::at_05), {"at_chosen", &OutcomeScope::at_chosen}})
+    if (entry.has(key)) {
+      scope.*flag = entry.at(key).flag();
+      entry.at(key).require(!(scope.*flag) || study.calibration, "false: the study has no calibration");
+    }
   scope.in_worlds = cell.in_worlds;
-  const std::string outcomes = entry.at("outcomes")
-                                   .letters([](char letter) { return loop_outcome(letter).has_value(); },
-                                            "a letter that an outcome has");
-  entry.at("outcomes")
-      .require(outcomes.size() == cell.truths.size(),
-               fmt::format("{} letters, one for each loop", cell.truths.size()));
-  for (std::size_t i = 0; i < outcomes.size(); ++i)
-    entry.at("outcomes")
-        .require(cell.truths[i] != kNoLoop || outcomes[i] == kNoLoop,
-                 fmt::format("'{}' of loop {}, which nobody has seen", kNoLoop, i));
+  const std::string outcomes = letters_in(
+      entry.at("outcomes"), cell.truths.size(),
+      [&](std::size_t loop, char letter) {
+        const std::optional<LoopOutcome> outcome = loop_outcome(letter);
+        return outcome && cell.truths[loop] != kNoLoop &&
+               may_be_said(*outcome, *fault_truth(cell.truths[loop]), scope);
+      },
+      "a letter of an outcome that such a method can have on such a loop");
   MethodScores scores = scores_of_outcomes(cell, outcomes, scope);
+  if (entry.has("failed"))
+    scores.failed =
+        entry.at("failed").whole(0, std::count(outcomes.begin(), outcomes.end(), letter_of(LoopOutcome{})));
   if (entry.has("reason"))
-    scores.reason = entry.at("reason").text();
+    scores.reason = words_in(entry.at("reason"));
   for (const char* const name : kRepairGains)
     if (entry.has(name))
-      scores.estimates[place_of_estimate(name)] = gain_in(entry.at(name), confidence);
+      scores.estimates[place_of_estimate(name)] = gain_in(entry.at(name), cell, study.aggregate.confidence);
   for (const char* const name : kDelays)
     if (entry.has(name))
-      scores.estimates[place_of_estimate(name)] = delay_in(entry.at(name));
+      scores.estimates[place_of_estimate(name)] = delay_in(entry.at(name), study, cell.truths.size());
   return scores;
 }
 
@@ -262,11 +258,12 @@ struct BoardMethod {
   OutcomeScope scope;
 };
 
-std::vector<BoardMethod> methods_in(const BoardEntry& entry) {
+std::vector<BoardMethod> methods_in(const JsonEntry& entry) {
   std::vector<BoardMethod> methods;
-  for (const BoardEntry& method : entry.list()) {
+  for (const JsonEntry& method : entry.list()) {
     method.require_keys({"name", "cv", "source"});
     const std::string name = method.at("name").text();
+    method.at("name").require(is_method_name(name), kMethodNameRule);
     method.at("name").require(std::none_of(methods.begin(), methods.end(),
                                            [&](const BoardMethod& each) { return each.name == name; }),
                               "each method once");
@@ -277,49 +274,72 @@ std::vector<BoardMethod> methods_in(const BoardEntry& entry) {
   return methods;
 }
 
-void read_loops(const BoardEntry& entry, CellScores& cell) {
-  cell.truths = entry.at("truths").letters([](char letter) { return fault_truth(letter).has_value(); },
-                                           "a letter that a truth has");
-  entry.at("truths").require(static_cast<std::int64_t>(cell.truths.size()) <= cell.experiments,
-                             fmt::format("at most {} letters, one for each experiment", cell.experiments));
-  constexpr int kMostWorlds = 1'000'000;
-  for (const BoardEntry& world : entry.at("worlds").list()) {
-    const std::int64_t number = world.whole(-1);
-    world.require(number < kMostWorlds, fmt::format("a world below {}", kMostWorlds));
-    cell.worlds.push_back(static_cast<int>(number));
-  }
-  entry.at("worlds").require(cell.worlds.size() == cell.truths.size(),
-                             fmt::format("{} worlds, one for each loop", cell.truths.size()));
+/// The loops, which are those that the suite draws.
+void read_loops(const JsonEntry& entry, const DrawnLoops& drawn, CellScores& cell) {
+  const std::size_t loops = drawn.truths.size();
+  cell.truths = letters_in(
+      entry.at("truths"), loops,
+      [&](std::size_t loop, char letter) {
+        const std::optional<FaultTruth> truth = fault_truth(letter);
+        return truth && truth->kind == drawn.truths[loop].kind && truth->one_cv == drawn.truths[loop].one_cv;
+      },
+      "a letter of the fault that the suite draws for the loop");
+  const auto unseen = std::count(cell.truths.begin(), cell.truths.end(), kNoLoop);
+  entry.at("failed").require(
+      cell.failed + cell.infeasible <= unseen,
+      fmt::format("with `infeasible` at most {}, the loops that nobody has seen", unseen));
+  const std::vector<JsonEntry> worlds = entry.at("worlds").list();
+  entry.at("worlds").require(worlds.size() == loops, fmt::format("{} worlds, one for each loop", loops));
+  for (std::size_t i = 0; i < loops; ++i)
+    worlds[i].require(worlds[i].whole(-1) == drawn.worlds[i],
+                      fmt::format("{}, the world of this loop", drawn.worlds[i]));
+  cell.worlds = drawn.worlds;
 }
 
-CellScores cell_in(const BoardEntry& entry, const SuiteCell& of, const std::vector<BoardMethod>& methods) {
+/// The experiments of a run: as many as the suite has, or the first ones of the cell. Those of a cell that
+/// could not be run are none.
+std::int64_t experiments_in(const JsonEntry& entry, const Study& study, bool was_run) {
+  const std::int64_t most = study.names_scenarios() ? study.experiment_count() : kMostLoops;
+  const std::int64_t experiments = entry.at("experiments").whole(0, was_run ? most : 0);
+  for (const char* const key : {"failed", "infeasible"})
+    entry.at(key).whole(0, experiments);
+  if (was_run)
+    entry.at("truths").require(entry.at("truths").json().is_string() &&
+                                   entry.at("truths").json().get_ref<const std::string&>().size() ==
+                                       static_cast<std::size_t>(experiments),
+                               fmt::format("a text of {} letters, one for each experiment", experiments));
+  return experiments;
+}
+
+CellScores cell_in(const JsonEntry& entry, const SuiteCell& of, const std::vector<BoardMethod>& methods) {
   const std::string digest = study_digest(of);
   entry.at("study").require(
       entry.at("study").text() == digest,
       fmt::format("{}, the SHA-256 of the study that this program has for the cell: the board is of another "
                   "suite or another version of the program",
                   digest));
+  const bool was_run = !entry.has("trouble");
   CellScores cell{.plant = of.plant,
                   .family = of.family,
                   .seed = of.study.seed,
                   .time_unit = of.study.plant.time_unit,
                   .monitored = of.study.monitoring.has_value(),
                   .in_worlds = of.study.world.has_value(),
-                  .experiments = entry.at("experiments").whole(),
+                  .experiments = experiments_in(entry, of.study, was_run),
                   .failed = entry.at("failed").whole(),
                   .infeasible = entry.at("infeasible").whole()};
-  if (entry.has("trouble")) {
-    cell.trouble = entry.at("trouble").text();
+  if (!was_run) {
+    cell.trouble = words_in(entry.at("trouble"));
+    entry.at("trouble").require(!cell.trouble.empty(), "why the cell could not be run");
     return cell;
   }
-  read_loops(entry, cell);
+  read_loops(entry, drawn_loops(of.study, cell.experiments), cell);
   std::vector<std::string> names;
   for (const BoardMethod& method : methods)
     names.push_back(method.name);
   entry.at("methods").require_keys(names);
   for (const BoardMethod& method : methods)
-    cell.methods.push_back(
-        scores_in(entry.at("methods").at(method.name), cell, method.scope, of.study.aggregate.confidence));
+    cell.methods.push_back(scores_in(entry.at("methods").at(method.name), cell, of.study, method.scope));
   return cell;
 }
 
@@ -331,14 +351,35 @@ const SuiteCell* cell_of(const Suite& suite, const std::string& plant, const std
   return found == suite.cells.end() ? nullptr : &*found;
 }
 
-BoardJson board_json(const std::filesystem::path& path) {
-  BoardJson json = BoardJson::parse(foreign_content(path, "the board of a suite"), nullptr, false);
-  if (json.is_discarded())
-    throw InputError(path.string(), "no JSON", "the board that `mpmbench suite` writes");
-  return json;
+/// The place of a name that the suite has.
+std::size_t axis_place(const std::vector<SuiteAxis>& axis, const JsonEntry& name) {
+  std::vector<std::string> names;
+  for (const SuiteAxis& each : axis)
+    names.push_back(each.name);
+  const auto found = std::find(names.begin(), names.end(), name.text());
+  name.require(found != names.end(), fmt::format("{}", fmt::join(names, ", ")));
+  return static_cast<std::size_t>(found - names.begin());
 }
 
-FinishedBoard board_in(const BoardEntry& entry, const Suite& suite) {
+/// The cell that an entry is about; null where this part of the suite leaves its plant or family out.
+const SuiteCell* cell_of(const Suite& suite, const JsonEntry& entry) {
+  const std::size_t plant = axis_place(suite.plants, entry.at("plant")),
+                    family = axis_place(suite.families, entry.at("family"));
+  const auto has = [&suite](auto same) { return std::any_of(suite.cells.begin(), suite.cells.end(), same); };
+  const SuiteCell* const found = cell_of(suite, suite.plants[plant].name, suite.families[family].name);
+  entry.at("family").require(
+      found != nullptr || !has([=](const SuiteCell& cell) { return cell.plant == plant; }) ||
+          !has([=](const SuiteCell& cell) { return cell.family == family; }),
+      fmt::format("a family in which the suite has the plant {}", suite.plants[plant].name));
+  return found;
+}
+
+BoardJson board_json(const std::filesystem::path& path) {
+  return parsed_json(foreign_content(path, "the board of a suite"), path.string(),
+                     "the board that `mpmbench suite` writes");
+}
+
+FinishedBoard board_in(const JsonEntry& entry, const Suite& suite) {
   entry.require_keys(
       {"format", "suite", "version", "seed", "mpmbench_version", "revision", "methods", "cells"});
   const auto same = [&entry](const char* key, const std::string& expected) {
@@ -349,14 +390,14 @@ FinishedBoard board_in(const BoardEntry& entry, const Suite& suite) {
   same("version", suite.version);
   entry.at("seed").require(static_cast<std::uint64_t>(entry.at("seed").whole()) == suite.seed,
                            fmt::to_string(suite.seed));
-  FinishedBoard board{entry.at("mpmbench_version").text(), entry.at("revision").text()};
+  FinishedBoard board{words_in(entry.at("mpmbench_version")), words_in(entry.at("revision"))};
   const std::vector<BoardMethod> methods = methods_in(entry.at("methods"));
   for (const BoardMethod& method : methods)
     board.methods.push_back(method.name);
-  for (const BoardEntry& cell : entry.at("cells").list()) {
+  for (const JsonEntry& cell : entry.at("cells").list()) {
     cell.require_keys({"plant", "family", "study", "experiments", "failed", "infeasible", "trouble", "truths",
                        "worlds", "methods"});
-    const SuiteCell* const of = cell_of(suite, cell.at("plant").text(), cell.at("family").text());
+    const SuiteCell* const of = cell_of(suite, cell);
     if (of == nullptr)
       continue;
     cell.at("family").require(std::none_of(board.cells.begin(), board.cells.end(),
@@ -426,8 +467,8 @@ std::optional<std::filesystem::path> find_board(const std::filesystem::path& pat
 
 BoardHeading board_heading(const std::filesystem::path& path) {
   const BoardJson json = board_json(path);
-  const BoardEntry entry(json, path.string());
-  return {entry.at("suite").text(), static_cast<std::uint64_t>(entry.at("seed").whole())};
+  const JsonEntry entry(json, path.string());
+  return {words_in(entry.at("suite")), static_cast<std::uint64_t>(entry.at("seed").whole())};
 }
 
 FinishedBoard read_board(const std::filesystem::path& path, const Suite& suite) {

@@ -164,7 +164,7 @@ std::string leaderboard_json(const Leaderboard& board) {
     json["own"] = board.own;
     json["standing"] = standing_json(board);
   }
-  return json.dump(1) + "\n";
+  return json_text(json, 1);
 }
 
 }  // namespace mpm

@@ -163,6 +163,11 @@ std::string counted(std::int64_t count, const std::string& thing, const std::str
   return fmt::format("{} {}", count, count == 1 ? thing : things.empty() ? thing + "s" : things);
 }
 
+std::string failures_text(const VerdictFailures& failures) {
+  return fmt::format("failed on {} of the {} on which it was asked, first with: {}", failures.failed,
+                     counted(failures.asked, "loop"), failures.reason);
+}
+
 std::string kind_name(ExperimentKind kind) {
   switch (kind) {
     case ExperimentKind::healthy:

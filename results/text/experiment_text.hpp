@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/experiment_record.hpp"
+#include "analysis/findings/method_rates.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {
@@ -16,6 +18,9 @@ std::string whose_intervals(bool in_worlds);
 std::string counted(std::int64_t count, const std::string& thing, const std::string& things = "");
 
 // How reports name experiments and what is in them; plain text. Foreign names in it are as in the study.
+
+/// "failed on 3 of the 20 loops on which it was asked, first with: singular matrix": what a method did.
+std::string failures_text(const VerdictFailures& failures);
 
 /// "healthy", "MPM", "UD", "MPM+UD", "tuning".
 std::string kind_name(ExperimentKind kind);

@@ -16,6 +16,30 @@ import numpy
 from archives import seal
 
 EXPERIMENTS = 40
+OWN_EXPERIMENTS = 20
+
+# A method of one's own: it ends, refuses every other loop, or judges by a threshold.
+OWN_METHOD = """
+import json, sys
+for line in sys.stdin:
+    if not line.strip():
+        continue
+    message = json.loads(line)
+    answer = {"number": message["number"]}
+    if message["ask"] == "describe":
+        options = message["describe"]["options"]
+    if message["ask"] == "loop":
+        value = max(map(abs, message["loop"]["y"][0]))
+        if options["does"] == "ends":
+            raise SystemExit("ModuleNotFoundError: no module named foo")
+        if options["does"] == "refuses" and int(value * 1e6) % 2:
+            answer["error"] = "singular matrix"
+        elif options["does"] == "does not apply":
+            answer["not_applicable"] = "nothing to look at"
+        else:
+            answer.update(flagged=value > options["threshold"], score=value)
+    print(json.dumps(answer), flush=True)
+"""
 
 # What 40 experiments can show.
 GATES = """
@@ -61,6 +85,56 @@ class Check:
         assert int(suite.get("skipped")) == len(suite.findall("testcase/skipped"))
         assert (int(suite.get("failures")) > 0) == (code == 1)
         return result.stdout, suite
+
+
+def own_run(check, name, does, threshold=0.0):
+    """An archive of one's own method, and what the run said under --quiet."""
+    (check.folder / "own.py").write_text(OWN_METHOD, encoding="utf-8")
+    file = check.folder / f"{name}.toml"
+    file.write_text(f"[method.own]\ncommand = ['{sys.executable}', '{check.folder}/own.py']\n"
+                    f"options = {{does = '{does}', threshold = {threshold}}}\n", encoding="utf-8")
+    archive = check.folder / f"{name}.h5"
+    said = check.run("run", "wood-berry", "-o", archive, "--experiments", OWN_EXPERIMENTS, "--method-file", file, "--quiet",
+                     code=0)
+    assert said.stdout == "", said
+    return archive, said.stderr
+
+
+def check_answers(check):
+    """What a method of one's own failed on is told, also under --quiet, and stops a check unless told otherwise."""
+    gate = '[[gate]]\naggregate = "infeasible"\nmaximum = 1.0\n'
+    for name, does, told, holds in (("ends", "ends", "no module named foo", False),
+                                    ("half", "refuses", "singular matrix", False),
+                                    ("never", "does not apply", "", True), ("well", "judges", "", True)):
+        archive, said = own_run(check, name, does)
+        assert ("warning: method 'own' failed on " in said and told in said) == (told != ""), (name, said)
+        text, suite = check.check(archive, gate, code=0 if holds else 1)
+        failing = [case.get("name") for case in suite.findall("testcase") if case.find("failure") is not None]
+        assert [case.split()[0] for case in failing] == ([] if holds else ["answered.own"]), (name, failing)
+        assert holds or told in text, text
+        check.check(archive, "minimum_answered = 0.0\n" + gate, code=0)
+        # What is assessed later is told as well.
+        said = check.run("compare", archive, "--methods", "own", "--quiet", code=0).stderr
+        assert ("failed on " in said) == (told != ""), (name, said)
+    assert "failed on 20 of the 20 loops on which it was asked" in own_run(check, "ends", "ends")[1]
+
+
+def check_own_baseline(check):
+    """Every method of both archives is compared, and an option of it that differs is named."""
+    before, _ = own_run(check, "before", "judges", 0.01)
+    now, _ = own_run(check, "now", "judges", 30.0)
+    baseline = f'[baseline]\narchive = "{before.name}"\nmaximum_lost = 0\n'
+    text, suite = check.check(now, baseline, code=1)
+    assert "changed since:\n  method.own.options.threshold: 0.01 -> 30.0\n" in text and "baseline.own.flag_fault.lost: fail" in text, text
+    assert suite.find("properties/property[@name='changed since: method.own.options.threshold']").get("value") == "0.01 -> 30.0"
+    text, _ = check.check(before, baseline, code=0)
+    assert "changed since" not in text and "no verdict changed: " in text, text
+    check.run("report", before, now, "-o", check.folder / "change.html", code=0)
+    page = (check.folder / "change.html").read_text(encoding="utf-8")
+    assert "<code>method.own.options.threshold</code>" in page and "<code>30.0</code>" in page
+    other = check.campaign("wood-berry", "other-methods.h5", "--methods", "sse")
+    text, _ = check.check(other, baseline, code=2)
+    assert "allowed: those of one of the methods that are checked: sse" in text, text
 
 
 def check_outcomes(check, archive):
@@ -123,13 +197,14 @@ def check_refusals(check, archive):
 def check_baseline(check, archive, edited):
     baseline = '[baseline]\narchive = "{}"\nmaximum_lost = 4\n'.format
     text, _ = check.check(archive, baseline(archive.name), code=0)  # relative to the gate file
-    assert "located: 0 lost, 0 gained" in text, text
+    assert "no verdict changed: " in text and " lost, " not in text, text
     error, _ = check.check(archive, baseline("none.h5"), code=2)
     assert "none.h5: no such file" in error, error
     # An edited study: the same loops, judged otherwise.
     text, _ = check.check(edited, baseline(archive.name).replace("= 4", "= 3"), code=1)
     assert "diagnosis.mpm_threshold: 0.1 -> 0.9" in text, text
-    assert "baseline.source_recognised.lost: fail" in text and "located: 0 lost, 0 gained" in text, text
+    assert "baseline.source_recognised.lost: fail" in text, text
+    assert "located" in text.split("no verdict changed: ")[1].splitlines()[0].split(", "), text
     error, _ = check.check(archive, baseline(check.campaign("chapter6", "seed.h5", "--seed", 7).name), code=2)
     assert "runs that cannot be paired: the seeds differ, 7 and 20150401" in error, error
     error, _ = check.check(archive, baseline(check.campaign("setpoint-methods", "other.h5").name), code=2)
@@ -163,6 +238,8 @@ def main(program, sources):
         broken = check_broken_indicator(check, sources)
         check_refusals(check, archive)
         check_baseline(check, archive, broken)
+        check_answers(check)
+        check_own_baseline(check)
 
 
 if __name__ == "__main__":

@@ -381,20 +381,32 @@ def check_program_refusals(outside):
             ("[method.x]\ncommand = ['cat']\ntime_limit = 0\n", "method.x.time_limit: found 0"),
             ("[method.x]\ncommand = ['cat']\noptions = 3\n", "method.x.options: found 3; allowed: a table"),
             ("[method.x]\ncommand = ['cat']\nother = 3\n", "unknown key 'other'"),
+            ("[method.'gr\u00f6\u00dfe']\ncommand = ['cat']\n", "allowed: a name of 1 to 64 letters"),
+            ("[method.all]\ncommand = ['cat']\n", "allowed: a name of 1 to 64 letters"),
             ("[method.'x y']\ncommand = ['cat']\n", "allowed: a name of 1 to 64 letters"),
             ("[method.x]\ncommand = ['/no/such/program']\n", "cannot be started"),
             ("[method.x]\ncommand = ['true']\n", "program `true` ended with code 0"),
             ("[method.x]\ncommand = ['cat']\n", "the unknown key 'ask'"),
             ("[method.x]\ncommand = ['sleep', '100']\ntime_limit = 0.1\n", "did not answer in time"),
             ("[method.x]\ncommand = ['sh', '-c', 'echo \"{\\\"number\\\": 1, \\\"answers\\\": [\\\"tea\\\"]}\"; cat']\n",
-             "found 'tea'; allowed: cv, channel, source, mismatch, candidate"),
+             "description: answers[0]: found \"tea\"; allowed: cv, channel, source, mismatch, candidate"),
+            # Of every key each other type of JSON, by its key, and in no words of the library.
+            *((boasting(f"{{'{key}': {value}}}"), f"description: {key}: found ") for key, values in
+              (("title", ("3", "['x']", "{}", "True")), ("verdict", ("3.5",)), ("needs", ("'benchmark'", "{'x': 1}", "3", "True")),
+               ("answers", ("'cv'",)), ("methods", ("'sse'",)), ("numbers", ("'x'", "{'name': 'n'}", "7")),
+               ("stated_false_alarms", ("'5 %'", "5", "[]"))) for value in values),
+            (boasting("{'needs': ['benchmark', 3]}"), "description: needs[1]: found 3; allowed: setpoints"),
+            (boasting("{'numbers': [3]}"), "description: numbers[0]: found 3; allowed: an object"),
+            (boasting("{'numbers': [{'name': 3}]}"), "description: numbers[0]: name: found 3; allowed: a text"),
+            (boasting("{'numbers': [{'scope': 'cv'}]}"), "description: numbers[0]: found no 'name'"),
+            (boasting("{'numbers': [{'name': 'n', 'scope': ['cv']}]}"), "numbers[0]: scope: found a list of 1; allowed: loop"),
             (boasting("{'numbers': [{'name': f'n{i}'} for i in range(100000)]}"), "found 100000 numbers; allowed: at most 1000"),
             (boasting("{'numbers': [{'name': 'n'}, {'name': 'n'}]}"), "the number 'n' a second time; allowed: every name once"),
-            (boasting("{'title': 'x' * 5000000}"), "found title of 5000000 bytes; allowed: at most 1000"),
+            (boasting("{'title': 'x' * 5000000}"), "title: found a text of 5000000 bytes; allowed: at most 1000"),
             (boasting("{'x' * 5000000: 1}"), "x...'; allowed: title, verdict, needs")):
         path.write_text(text, encoding="utf-8")
         said = outside.run("compare", outside.archive, "--method-file", path, "-o", out, "--quiet", code=2)
-        assert message in said and len(said) < 5000, (text, message, said[:2000])
+        assert message in said and len(said) < 5000 and "exception" not in said, (text, message, said[:2000])
     path.write_text(f"[method.sse]\ncommand = ['{sys.executable}', 'examples/mine.py']\n", encoding="utf-8")
     assert "'sse' from outside; allowed: a name that is not one of" in outside.run(
         "compare", outside.archive, "--method-file", path, "-o", out, code=2)

@@ -160,12 +160,20 @@ def check_refusals(trial, reference):
     shard.write_bytes(whole)
     description = trial.parts / "2-of-2" / "campaign.json"
     text = description.read_text()
-    for damaged in ("", text[:100], text.replace('"seed"', '"sead"'), text.replace('"none"', '"nome"'),
-                    text.replace("flagged", "flogged"), text.replace("mpmbench part", "part")):
-        if damaged != text:
-            description.write_text(damaged)
-            error = trial.merge(code=2)
-            assert str(description) in error and not trial.archive.exists(), error
+    described = json.loads(text)
+    # Every key is missing, or has another type of JSON.
+    damages = [("", "no JSON"), (text[:100], "no JSON"), ("[]", "allowed: an object"), ("[" * 100000, "no JSON"),
+               *((json.dumps({**described, key: value}), f"{key}: found ") for key in described for value in (None, {}, -1.5)
+                 if key != "shard"),
+               *((json.dumps({name: value for name, value in described.items() if name != key}), f"found no '{key}'")
+                 for key in described if key != "shard"),
+               (json.dumps({**described, "shard": {"number": 3, "of": 2}}), "shard: number: found 3; allowed: a whole number"),
+               (json.dumps({**described, "sead": 1}), "the unknown key 'sead'")]
+    for damaged, message in damages:
+        description.write_text(damaged)
+        error = trial.merge(code=2)
+        assert str(description) in error and message in error and "exception" not in error, (damaged[:200], error)
+        assert not trial.archive.exists()
     description.write_text(text)
     trial.check(reference)
 

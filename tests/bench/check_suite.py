@@ -171,6 +171,24 @@ def check_gated(tiny):
     assert "nearest: 'compare.sse.classic.answered'" in check("one", answered.replace("classic", "clasic"), 2)
 
 
+def check_failures(tiny):
+    """A method of one's own that fails is told under --quiet, and stops a check of the folder."""
+    program, methods, gates = (tiny.folder / name for name in ("fails.py", "fails.toml", "fails.gates.toml"))
+    program.write_text(OWN_METHOD.replace("largest = ", "raise SystemExit('no module named foo')\n            largest = "))
+    methods.write_text(f"[method.fails]\ncommand = ['{sys.executable}', '-B', '{program}']\n")
+    words = ["--plants", "column", "--families", "classic,both", "--methods", "sse,fails", "--method-file", methods, "--quiet"]
+    done = subprocess.run(tiny.command("fails", *words), capture_output=True, text=True, timeout=PATIENCE)
+    cells = json.loads((tiny.folder / "fails/tiny.board.json").read_text())["cells"]
+    loops = sum(len(cell["truths"].replace("-", "")) for cell in cells)
+    assert done.returncode == 0 and f"warning: method 'fails' failed on {loops} of the {loops} loops" in done.stderr, done
+    assert "no module named foo" in done.stderr and "'sse' failed" not in done.stderr, done.stderr
+    for text, code in ("", 1), ("minimum_answered = 0\n", 0):
+        gates.write_text(text + '[[gate]]\naggregate = "compare.sse.answered"\nminimum = 1\n')
+        command = [tiny.program, "check", tiny.folder / "fails", "--suite", tiny.file, "--gates", gates]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+        assert done.returncode == code and ("answered.fails: fail: " in done.stdout) == (code == 1), done
+
+
 def check_damaged(tiny, shown):
     """An archive that cannot be read is named, and made anew."""
     archive = tiny.folder / "one" / "column.classic.h5"
@@ -326,9 +344,13 @@ def check_foreign_boards(tiny):
         (lambda board: board["cells"][0].update(truths="!" * 12), ["cells[0]: truths, loop 0: found '!'"]),
         (lambda board: board["cells"][0]["methods"]["sse"].update(outcomes="B"), ["outcomes: found \"B\"", "12 letters"]),
         (lambda board: board["cells"][0]["methods"].pop("sse"), ["methods: found no 'sse'"]),
-        (lambda board: board["cells"][0]["worlds"].append(0), ["worlds: found array of 13", "12 worlds"]),
+        (lambda board: board["cells"][0]["worlds"].append(0), ["worlds: found a list of 13", "12 worlds"]),
         (lambda board: board["cells"].append(board["cells"][0]), ["each cell once"]),
         (lambda board: board["methods"].append(board["methods"][0]), ["each method once"]),
+        (lambda board: board["methods"][0].update(name="=cmd|x!A0"), ["methods[0]: name: found \"=cmd|x!A0\"", "1 to 64 letters"]),
+        (lambda board: board["cells"][0].update(plant="weather"), ["cells[0]: plant: found \"weather\"", "column, shell"]),
+        (lambda board: board["cells"][0].update(family="noisy"), ["cells[0]: family: found \"noisy\"", "the plant column"]),
+        (lambda board: board["cells"][0].update(experiments=10 ** 12), ["experiments: found 1000000000000"]),
     ]
     for damage, parts in damages:
         board = json.loads(text)
@@ -356,6 +378,7 @@ def main():
         check_texts(tiny)
         check_kept(tiny, shown)
         check_gated(tiny)
+        check_failures(tiny)
         check_damaged(tiny, shown)
         check_interrupted(tiny, shown)
         check_parts(tiny, shown)

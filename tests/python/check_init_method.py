@@ -57,13 +57,19 @@ def check_methods(folder, files):
         assert method["rates"] == methods["sse"]["rates"] and method["rates"]["detected"]["hits"] > 0, method
 
 
-def check_refusals(folder):
+def check_refusals(folder, octave):
     before = {path: path.read_bytes() for path in folder.path.iterdir() if path.is_file()}
     for name, message in (("mine.py", "mine.py: found a file that is there; allowed: a name for a new one"),
                           ("mine.cpp", "FILE: found 'mine.cpp'; allowed: NAME.py or NAME.m"),
                           ("sse.py", "FILE: found the name of the method sse; allowed: a name that is not one of"),
+                          ("numpy.py", "FILE: found 'numpy', the name of a module of Python"),
+                          ("statistics.py", "FILE: found 'statistics', the name of a module of Python"),
+                          ("mpmbench.py", "FILE: found 'mpmbench', the name of a module of Python"),
+                          ("all.py", "FILE: found 'all'; allowed: a name of 1 to 64 letters"),
+                          ("-x.m", "FILE: found '-x'; allowed: a name of 1 to 64 letters"),
+                          *([("mean.m", "FILE: found 'mean', the name of a function of Octave")] if octave else []),
                           ("no/such.py", "no/such.toml: cannot be written")):
-        assert message in folder.run("init-method", name, code=3 if "/" in name else 2), name
+        assert message in folder.run("init-method", "--", name, code=3 if "/" in name else 2), name
     (folder.path / "other.toml").write_text("")
     assert "other.toml: found a file that is there" in folder.run("init-method", "other.py", code=2)
     assert not (folder.path / "other.py").exists()
@@ -81,7 +87,7 @@ def main(program, sources, octave=""):
         path.mkdir()
         folder = Folder(program, path, environment)
         check_methods(folder, ["mine.py", *(["in-octave.m"] if octave else [])])
-        check_refusals(folder)
+        check_refusals(folder, octave)
         if octave:
             result = subprocess.run([octave, "--norc", "--quiet", "--no-gui", "--path", f"{sources}/octave", "--eval", READING],
                                     cwd=path, env=environment, capture_output=True, text=True, timeout=600)

@@ -187,15 +187,45 @@ class Methods(unittest.TestCase):
         self.assertIn("not this one", set(answered.group("methods/picky")["reason"].values))
 
     def test_needs_and_names_are_checked_by_the_program(self):
-        for function, name, needs, message in ((lambda loop: True, "tea", ["tea"], "found 'tea'; allowed: setpoints"),
-                                               (lambda loop: True, "sse", [], "found 'sse' from outside"),
-                                               (lambda loop: True, "b a d", [], "allowed: a name of 1 to 64 letters")):
+        for name, needs, message in (("tea", ["tea"], r"needs\[0\]: found \"tea\"; allowed: setpoints"),
+                                     ("sse", [], "found 'sse' from outside"),
+                                     *((name, [], f"found '{name}'; allowed: a name of 1 to 64 letters")
+                                       for name in ("b a d", "gr\u00f6\u00dfe", "all", "-x", "a.b", "loops"))):
             with self.assertRaisesRegex(mpmbench.InputError, message):
-                archive.compare(mpmbench.method(function, name=name, needs=needs), quiet=True)
+                archive.compare(mpmbench.method(lambda loop: True, name=name, needs=needs), quiet=True)
+        with self.assertRaisesRegex(mpmbench.InputError, "description: title: found 3; allowed: a text"):
+            archive.compare(mpmbench.method(lambda loop: True, name="three", title=3), quiet=True)
         with self.assertRaisesRegex(ValueError, "found two of the name 'mine'"):
             archive.compare(mine, mine.with_options(threshold=3), quiet=True)
         with self.assertRaisesRegex(TypeError, "methods: found 3; allowed: names, and functions"):
             archive.compare(3)
+
+    def test_a_text_where_a_list_is_meant_is_refused_at_once(self):
+        for key, given in (("needs", "benchmark"), ("answers", "cv"), ("needs", [3]), ("answers", None)):
+            with self.assertRaisesRegex(TypeError, f"method mine: {key}: found .*; allowed: a list of texts, such as"):
+                mpmbench.method(lambda loop: True, **{key: given})
+        for numbers in ["ratio"], {"ratio": 3}:
+            with self.assertRaisesRegex(TypeError, "method mine: numbers: found .*; allowed: {name: scope}"):
+                mpmbench.method(lambda loop: True, numbers=numbers)
+
+    def test_no_method_changes_a_loop_or_its_benchmark(self):
+        scores = []
+
+        @mpmbench.method(needs=["benchmark"])
+        def in_place(loop):
+            for signals in loop, loop.benchmark, loop.whole:
+                for name in "y", "u", "u_target", "d", "y_sim", "y_set", "candidates":
+                    with self.assertRaisesRegex(ValueError, "read-only"):
+                        getattr(signals, name)[...] = 1.0
+            y = loop.benchmark.y.copy()
+            y -= y.mean() - 1
+            loop.to_xarray()["y"] *= 2
+            loop.to_frame().iloc[:] = 0.0
+            scores.append(float(y.std()))
+            return {"flagged": True, "score": scores[-1]}
+
+        archive.compare(in_place, quiet=True)
+        self.assertEqual((len(scores), len(set(scores))), (20, 1))
 
     def test_answers_of_another_function_are_not_taken_for_those_of_this_one(self):
         def flagging(verdict):
@@ -241,6 +271,60 @@ class Methods(unittest.TestCase):
                 self.assertIn("ValueError: too high", reasons[i])
             else:
                 self.assertEqual(scores[i, place], loop.y.var())
+
+
+HOSTILE = """=1+x0"' onx0="'><x0>&$x0$"""
+
+
+class Hostile(unittest.TestCase):
+    def check(self, page):
+        self.assertIn("x0", page)
+        self.assertNotIn("<x0", page)
+        self.assertNotRegex(page, r"<[^<>]*[\"'] onx0=")
+
+    def test_texts_of_others_are_texts_in_a_notebook(self):
+        rate = {"value": 0.5, "lower": 0.4, "upper": 0.6, "hits": 1, "total": 2}
+        method = {"name": HOSTILE, "rates": {"answered": rate}, "all": {"rates": {"answered": rate}}}
+        axis = [{"name": HOSTILE, "title": HOSTILE}]
+        board = {"suite": HOSTILE, "version": HOSTILE, "title": HOSTILE, "seed": 1, "plants": axis, "families": axis,
+                 "cells": [{"experiments": 2}], "methods": [method], "own": [HOSTILE], "standing": {HOSTILE: {"says": HOSTILE}}}
+        self.check(mpmbench.Board(json.dumps(board))._repr_html_())
+        self.check(mpmbench.Comparison(json.dumps({"methods": [method]}), archive, [HOSTILE], {})._repr_html_())
+        self.check(mpmbench.Assessment(json.dumps({"found": HOSTILE, "verdict": [HOSTILE] * 3}), None, None)._repr_html_())
+        opened = mpmbench.open("a.h5")
+        opened.attributes = {"title": HOSTILE, "master_seed": HOSTILE}
+        opened.path = pathlib.Path(HOSTILE)
+        opened.experiments = opened.experiments.assign(kind=("experiment", [HOSTILE] * 20))
+        self.check(opened._repr_html_())
+
+    def test_names_are_no_formulas_in_figures(self):
+        loop = archive.loop(3)
+        for kind in "cvs", "mvs":
+            for variable in loop.context[kind]:
+                variable["name"] = variable["unit"] = r"$\frac{$"
+        loop.context["time_unit"] = r"$\frac{$"
+        loop.plot().savefig("dollars.svg")
+
+
+class Programs(unittest.TestCase):
+    def test_only_the_tree_or_prefix_of_the_package_has_its_program(self):
+        from mpmbench import program
+        with tempfile.TemporaryDirectory() as name:
+            top = pathlib.Path(name)
+            for place in "bin/mpmbench", "build/release/bench/mpmbench", "a/bin/mpmbench", "a/build/release/bench/mpmbench":
+                (top / place).parent.mkdir(parents=True)
+                (top / place).write_text("not mine")
+            tree = top / "a/tree"
+            (tree / "scenarios").mkdir(parents=True)
+            (tree / "python").mkdir()
+            (tree / "python/pyproject.toml").write_text("")
+            for package, expected in (("a/tree/python/mpmbench", "a/tree/build/release/bench/mpmbench"),
+                                      ("a/lib/python3/dist-packages/mpmbench", "a/bin/mpmbench"),
+                                      ("a/lib/python3.11/site-packages/mpmbench", "a/bin/mpmbench"),
+                                      ("a/b/lib/c/mpmbench", None), ("a/python/mpmbench", None), ("a/b/c/mpmbench", None),
+                                      ("a/lib/b/c/python/mpmbench", None)):
+                found = program.beside(top / package)
+                self.assertEqual(found, expected and top / expected, package)
 
 
 class Boards(unittest.TestCase):

@@ -323,7 +323,11 @@ TEST_CASE("judgements, counted one by one, are the rates of the findings") {
 
 JudgementChanges location_changes(const std::vector<ExperimentRecord>& before,
                                   const std::vector<ExperimentRecord>& now) {
-  return judgement_changes({before, location}, {now, location});
+  JudgementChanges changes;
+  each_in_both(before, now, [&](const ExperimentRecord& was, const ExperimentRecord& is) {
+    changes.add({is.draw.index, location(was), location(is)}, is.draw.world);
+  });
+  return changes;
 }
 
 TEST_CASE("judgement changes: what is lost and gained is named, and a vanished verdict is lost") {

@@ -37,6 +37,7 @@ inconclusive = "pass"
 confidence = 0.9
 maximum_failed = 3
 minimum_experiments = 40
+minimum_answered = 0.5
 [[gate]]
 aggregate = "infeasible"
 maximum = 0.1
@@ -57,6 +58,7 @@ maximum_lost = 0
   CHECK(file.confidence == 0.9);
   CHECK(file.maximum_failed == 3);
   CHECK(file.minimum_experiments == 40);
+  CHECK(file.minimum_answered == 0.5);
   REQUIRE(file.gates.size() == 2);
   CHECK(file.gates[0].name == "infeasible");
   CHECK(file.gates[0].minimum == -mpm::kInfinity);
@@ -79,6 +81,7 @@ TEST_CASE("gate file: defaults, an absolute path, and a baseline without gates")
   CHECK_FALSE(file.confidence);
   CHECK(file.maximum_failed == 0);
   CHECK(file.minimum_experiments == 1);
+  CHECK(file.minimum_answered == 0.9);
   CHECK(file.gates.empty());
   CHECK(file.baseline->archive == "/x/a.h5");
   CHECK(file.baseline->significance == 0.05);
@@ -119,7 +122,7 @@ TEST_CASE("gate file: mistakes are refused with line, key, what was found and wh
        "g.toml:1: minimum_experiments: found 0; allowed: a whole number from 1 to 2147483647"},
       {"[baselin]\narchive = \"a\"\n",
        "g.toml:1: top level: found unknown key 'baselin' (nearest: 'baseline'); allowed: inconclusive, "
-       "confidence, maximum_failed, minimum_experiments, gate, baseline"},
+       "confidence, maximum_failed, minimum_experiments, minimum_answered, gate, baseline"},
       {"[[gate]]\nmaximum = 0.1\nminumum = 0\n",
        "g.toml:3: gate[0]: found unknown key 'minumum' (nearest: 'minimum'); allowed: aggregate, minimum, "
        "maximum, with_confidence, minimum_count, reason"},

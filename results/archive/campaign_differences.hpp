@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "results/archive/campaign.hpp"
+#include "analysis/study_files/study_differences.hpp"
+
+namespace mpm {
+
+/// What decides on the answers of two campaigns and is another thing in each: the keys of their studies
+/// (study_differences()), and of each method from outside that both have the keys of its file, by the names
+/// that these have there:
+///
+/// | key                        | value                                                             |
+/// |----------------------------|-------------------------------------------------------------------|
+/// | method.NAME.options.KEY    | as JSON                                                           |
+/// | method.NAME.command        | with digests of the files in it; of a file of verdicts its origin |
+///
+/// Errors: as resolved_study().
+std::vector<StudyDifference> campaign_differences(const Campaign& before, const Campaign& now);
+
+/// The methods of `campaign` that `other` does not have.
+std::vector<std::string> methods_alone(const Campaign& campaign, const Campaign& other);
+
+}  // namespace mpm

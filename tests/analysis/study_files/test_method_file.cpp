@@ -1,0 +1,21 @@
+#include <string>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/methods/method_file.hpp"
+
+namespace {
+
+using namespace mpm;
+
+TEST_CASE("method file: a name is part of options, files, tables and pages, and means nothing else there") {
+  for (const char* const name : {"mine", "x", "KL-2_b", "_a", "2nd", "alle"})
+    CHECK(is_method_name(name));
+  CHECK(is_method_name(std::string(64, 'a')));
+  for (const char* const name : {"", "-x", "all", "experiments", "findings", "loops", "a,b", "a b", "a.b",
+                                 "a/b", "=a", "<a>", "gr\xC3\xB6\xC3\x9F\x65", "a\n"})
+    CHECK_FALSE(is_method_name(name));
+  CHECK_FALSE(is_method_name(std::string(65, 'a')));
+}
+
+}  // namespace

@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "results/suite/board_file.hpp"
+#include "tests/results/made_up_campaign.hpp"
+
+namespace {
+
+using namespace mpm;
+using namespace mpm::testing;
+using Catch::Contains;
+using FileJson = nlohmann::ordered_json;
+
+const Suite& quick() {
+  static const Suite suite = find_suite("quick");
+  return suite;
+}
+
+/// The shipped board with a change.
+FinishedBoard read_changed(const std::function<void(FileJson&)>& change) {
+  FileJson json = FileJson::parse(file_content(finished_board_path(quick())));
+  change(json);
+  const TemporaryFolder folder;
+  make_file(folder / "q.board.json", json.dump());
+  return read_board(folder / "q.board.json", quick());
+}
+
+/// The name of the first method of a board becomes another one.
+void rename_first(FileJson& json, const std::string& name) {
+  const std::string old = json["methods"][0]["name"];
+  json["methods"][0]["name"] = name;
+  for (FileJson& cell : json["cells"]) {
+    FileJson methods = FileJson::object();
+    for (const auto& item : cell["methods"].items())
+      methods[item.key() == old ? name : item.key()] = item.value();
+    cell["methods"] = methods;
+  }
+}
+
+TEST_CASE("board file: the shipped board is read, and failures of methods are kept", "[suite]") {
+  const FinishedBoard board = read_changed([](FileJson& json) {
+    auto& of_method = json["cells"][0]["methods"]["sse"];
+    std::string outcomes = of_method["outcomes"];
+    outcomes[1] = 'A';
+    of_method["outcomes"] = outcomes;
+    of_method["failed"] = 1;
+  });
+  CHECK(board.cells.size() == quick().cells.size());
+  const auto sse = std::find(board.methods.begin(), board.methods.end(), "sse") - board.methods.begin();
+  CHECK(board.cells[0].methods[static_cast<std::size_t>(sse)].failed == 1);
+  CHECK(board.cells[1].methods[static_cast<std::size_t>(sse)].failed == 0);
+  const Leaderboard shown = leaderboard_of(quick(), board);
+  CHECK_THAT(board_text(quick(), shown, "r"), Contains("\"failed\":1"));
+}
+
+TEST_CASE("board file: names follow the rule of method files", "[suite]") {
+  for (const char* const name :
+       {"", "-x", "botelho,sun",
+        "gr\xC3\xB6\xC3\x9F"
+        "e",
+        "all", "loops", "=cmd|x!A0", "@SUM(1)", "+1+2", "<script>alert(1)</script>", "a b", "a.b", "a/b"}) {
+    CAPTURE(name);
+    CHECK_THROWS_WITH(read_changed([name](FileJson& json) { rename_first(json, name); }),
+                      Contains("methods[0]: name: found ") && Contains("a name of 1 to 64 letters"));
+  }
+  CHECK_NOTHROW(read_changed([](FileJson& json) { rename_first(json, "x-1_B"); }));
+}
+
+TEST_CASE("board file: what the suite cannot have given is refused, by its key", "[suite]") {
+  using Change = std::function<void(FileJson&)>;
+  const auto in_cell = [](auto change) -> Change {
+    return [change](FileJson& json) { change(json["cells"][0]); };
+  };
+  const auto in_sse = [](auto change) -> Change {
+    return [change](FileJson& json) { change(json["cells"][0]["methods"]["sse"]); };
+  };
+  // In the cell 0 loop 0 has a mismatch on one CV, and loop 2 is healthy.
+  const std::vector<std::pair<Change, std::string>> changes{
+      {in_cell([](FileJson& cell) { cell["experiments"] = 1'000'000'000'000; }),
+       "cells[0]: experiments: found "},
+      {in_cell([](FileJson& cell) { cell["experiments"] = 23; }), "cells[0]: truths: found "},
+      {in_cell([](FileJson& cell) { cell["experiments"] = 24.5; }), "cells[0]: experiments: found 24.5"},
+      {in_cell([](FileJson& cell) { cell["failed"] = -1; }), "cells[0]: failed: found -1"},
+      {in_cell([](FileJson& cell) { cell["infeasible"] = 20; }), "cells[0]: failed: found 0"},
+      {in_cell([](FileJson& cell) { cell["plant"] = "nowhere"; }), "cells[0]: plant: found \"nowhere\""},
+      {in_cell([](FileJson& cell) { cell["family"] = 3; }), "cells[0]: family: found 3; allowed: a text"},
+      {in_cell([](FileJson& cell) { cell["worlds"].erase(0); }), "cells[0]: worlds: found a list of 23"},
+      {in_cell([](FileJson& cell) { cell["worlds"][3] = 7; }),
+       "cells[0]: worlds[3]: found 7; allowed: 1, the world"},
+      {in_cell([](FileJson& cell) { cell["truths"] = "AAAAAAAAAAAAAAAAAAAAAAAA"; }),
+       "cells[0]: truths, loop 0: found 'A'"},
+      {in_cell([](FileJson& cell) { cell["truths"] = 3; }), "cells[0]: truths: found 3"},
+      {in_cell([](FileJson& cell) { cell["methods"] = FileJson::array(); }),
+       "cells[0]: methods: found a list of 0"},
+      {in_cell([](FileJson& cell) { cell["trouble"] = "none"; }),
+       "cells[0]: experiments: found 24; allowed: a whole number from 0 to 0"},
+      {in_sse([](FileJson& of) { of["outcomes"] = "B"; }), "methods: sse: outcomes: found "},
+      {in_sse([](FileJson& of) { of["outcomes"] = "!fffffffffffffffffffffff"; }),
+       "sse: outcomes, loop 0: found '!'"},
+      // The source of a healthy loop, and of a method that names none.
+      {in_sse([](FileJson& of) { of["outcomes"] = std::string(24, 'j'); }),
+       "sse: outcomes, loop 0: found 'j'"},
+      {in_sse([](FileJson& of) { of["failed"] = 25; }), "sse: failed: found 25"},
+      {in_sse([](FileJson& of) { of["at_05"] = "yes"; }),
+       "sse: at_05: found \"yes\"; allowed: true or false"},
+      {in_sse([](FileJson& of) {
+         of["detection_delay"] = {1, 1, 1, 1};
+       }),
+       "sse: detection_delay: found a list of 4"},
+      {in_sse([](FileJson& of) {
+         of["repair_gain_share"] = FileJson::array({{5.0, 1}});
+       }),
+       "repair_gain_share[0]"},
+      {in_sse([](FileJson& of) {
+         of["repair_gain_share"] = FileJson::array({{1.0, 0}, {1.0, 100}});
+       }),
+       "repair_gain_share[0][0]"},
+      {in_sse([](FileJson& of) {
+         of["repair_gain_share"] = FileJson::array({{0.0, 0}, {"Infinity", 1}});
+       }),
+       "repair_gain_share[1][0]"},
+      {in_sse([](FileJson& of) {
+         of["repair_gain_share"] = std::vector<std::vector<double>>(99, {0.0, 0.0});
+       }),
+       "repair_gain_share"},
+      {[](FileJson& json) { json["cells"].push_back(json["cells"][0]); }, "cells[15]: family: found "},
+      {[](FileJson& json) { json["cells"] = 3; }, "cells: found 3; allowed: a list"},
+      {[](FileJson& json) { json["seed"] = "x"; }, "seed: found \"x\""},
+      {[](FileJson& json) { json["methods"] = FileJson::array(); }, "methods: found a list of 0"},
+      {[](FileJson& json) { json = FileJson::array(); }, "found a list of 0; allowed: an object"},
+  };
+  for (const std::pair<Change, std::string>& each : changes) {
+    CAPTURE(each.second);
+    CHECK_THROWS_WITH(read_changed(each.first), Contains("q.board.json: ") && Contains(each.second) &&
+                                                    Contains("; allowed: ") && !Contains("[json.exception"));
+    CHECK_THROWS_AS(read_changed(each.first), InputError);
+  }
+}
+
+}  // namespace
