@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "plants/error.hpp"
-#include "results/records/written_date.hpp"
+#include "results/records/date_words.hpp"
 
 namespace mpm {
 namespace {

@@ -23,6 +23,7 @@
 #include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "results/records/date_words.hpp"
 #include "results/records/matlab_columns.hpp"
 #include "results/records/time_stamps.hpp"
 
@@ -30,16 +31,17 @@ namespace mpm {
 namespace {
 
 constexpr std::array kUsualTimes{"time", "timestamp", "datetime", "date", "t"};
-constexpr double kMicrosecond = 1e-6;                       // s
+constexpr double kMicrosecond = 1e-6;  // s
+constexpr std::string_view kSince = " since ";
 constexpr double kEarliest = -12212553600.0;                // 1583-01-01 in s since 1970
 constexpr double kLatest = 253402300800.0;                  // 10000-01-01
 constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // of 8 bytes, that it becomes
-constexpr const char* kAllowed = "a netCDF-4 file of records, or a CSV file (docs/own_records.md)";
+constexpr const char* kAllowed =
+    "a netCDF-4 file of records, one of MATLAB 7.3, or a CSV file (docs/own_records.md)";
 
 /// Seconds in a unit of CF; none of another one. Months and years have no fixed length.
 std::optional<double> seconds_in(std::string unit) {
-  std::transform(unit.begin(), unit.end(), unit.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  unit = in_lower_case(std::move(unit));
   if (unit.size() > 2 && unit.back() == 's')
     unit.pop_back();
   for (const auto& [names, seconds] :
@@ -49,6 +51,24 @@ std::optional<double> seconds_in(std::string unit) {
     if (std::string(names).find(fmt::format(" {} ", unit)) != std::string::npos)
       return seconds;
   return std::nullopt;
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+/// A date in which each number has two digits at least, as people write 1900-1-1 0:0:0 here.
+std::string with_two_digits(const std::string& date) {
+  const auto is_digit = [&date](std::size_t at) {
+    return at < date.size() && std::isdigit(static_cast<unsigned char>(date[at])) != 0;
+  };
+  std::string padded;
+  for (std::size_t at = 0; at < date.size(); ++at) {
+    const bool alone = is_digit(at) && !is_digit(at + 1) && at > 0 && !is_digit(at - 1);
+    padded += alone && date[at - 1] != '.' ? std::string{'0', date[at]} : std::string{date[at]};
+  }
+  return padded;
 }
 
 /// The stamp of a time in s since 1970, with so many digits behind the point.
@@ -76,9 +96,11 @@ class NetcdfReader {
       if (variable != time_)
         add_variable(variable);
     if (columns_.names.size() < 2)
-      throw InputError(columns_.file, several_loops_ ? "several loops" : "no variables along the time",
-                       several_loops_ ? "a file of one loop: take it out first (ncks -d loop,0)"
-                                      : "numbers of one dimension, or of two with the time last");
+      throw InputError(
+          columns_.file,
+          several_loops_ ? "several loops" : "no variables along the time" + left_out_text(columns_),
+          several_loops_ ? "a file of one loop: take it out first (ncks -d loop,0)"
+                         : "numbers of one dimension, or of two with the time last");
     return std::move(columns_);
   }
 
@@ -98,7 +120,10 @@ class NetcdfReader {
     const std::string along = time_.empty() && has("sample") ? "sample" : time_;
     if (along.empty() || root_.dimensions(along).size() != 1)
       throw InputError(
-          columns_.file, "no variable of the time",
+          columns_.file,
+          along.empty()
+              ? std::string("no variable of the time")
+              : fmt::format("'{}' of {} dimensions for the time", along, root_.dimensions(along).size()),
           fmt::format("one of one dimension (data.time), such as {}", fmt::join(kUsualTimes, ", ")));
     dimension_ = root_.dimensions(along).front();
     samples_ = root_.shape(along).front();
@@ -113,8 +138,10 @@ class NetcdfReader {
       return root_.texts(time_);
     const std::vector<std::string> numbers = number_cells(time_);
     const std::string units = root_.text_attribute(time_, "units").value_or("");
-    const std::size_t since = units.find(" since ");
-    return since == std::string::npos ? numbers : dates(units.substr(0, since), units.substr(since + 7));
+    const std::size_t since = in_lower_case(units).find(kSince);
+    return since == std::string::npos
+               ? numbers
+               : dates(trimmed(units.substr(0, since)), trimmed(units.substr(since + kSince.size())));
   }
 
   /// The date that times are counted from, in s since 1970: of the calendar that clocks have.
@@ -128,12 +155,12 @@ class NetcdfReader {
           place, fmt::format("'{}'", cut_utf8(date, kShownBytes)),
           fmt::format("a date such as 2024-10-27 00:00:00, with a year of four digits from {} on",
                       kFirstYear));
-    const std::vector<std::string> cell{date};
+    const std::vector<std::string> cell{with_two_digits(date)};
     const std::vector<std::size_t> line{0};
-    const TimeStamps begin = parse_time_stamps({place, cell, line}, {.order = DateOrder::year_month_day});
-    if (!begin.calendar)
+    if (!is_date(cell.front()))
       throw InputError(place, fmt::format("'{}'", cut_utf8(date, kShownBytes)),
                        "a date, such as 2024-10-27 00:00:00");
+    const TimeStamps begin = parse_time_stamps({place, cell, line}, {.order = DateOrder::year_month_day});
     return begin.times.front();
   }
 
@@ -145,7 +172,7 @@ class NetcdfReader {
       throw InputError(place,
                        fmt::format("'{} since {}'", cut_utf8(unit, kShownBytes), cut_utf8(date, kShownBytes)),
                        "nanoseconds to days since a date");
-    const std::string calendar = root_.text_attribute(time_, "calendar").value_or("standard");
+    const std::string calendar = in_lower_case(root_.text_attribute(time_, "calendar").value_or("standard"));
     if (calendar != "standard" && calendar != "gregorian" && calendar != "proleptic_gregorian")
       throw InputError(fmt::format("{}: calendar of '{}'", columns_.file, time_),
                        fmt::format("'{}'", cut_utf8(calendar, kShownBytes)),
@@ -213,11 +240,10 @@ class NetcdfReader {
       add_characters(variable, shape.back());
       return;
     }
-    if (dimensions.empty() || dimensions.back() != dimension_ || dimensions.size() > 3 ||
-        variable == dimension_ || !(root_.is_number(variable) || root_.is_text(variable)))
+    if (variable == dimension_)
       return;
-    if (dimensions.size() == 3 && shape.front() != 1) {
-      several_loops_ = true;
+    if (const char* const why = why_no_column(variable, dimensions, shape)) {
+      columns_.left_out.emplace(variable, why);
       return;
     }
     std::vector<std::string> cells = root_.is_text(variable) ? root_.texts(variable) : number_cells(variable);
@@ -233,11 +259,26 @@ class NetcdfReader {
     }
   }
 
+  /// Null of one that gives columns.
+  const char* why_no_column(const std::string& variable, const std::vector<std::string>& dimensions,
+                            const std::vector<std::size_t>& shape) {
+    if (dimensions.empty() || dimensions.back() != dimension_)
+      return "its last dimension is not that of the time";
+    if (!root_.is_number(variable) && !root_.is_text(variable))
+      return "its values are neither real numbers nor texts";
+    several_loops_ = several_loops_ || (dimensions.size() == 3 && shape.front() != 1);
+    return dimensions.size() > 3 || (dimensions.size() == 3 && shape.front() != 1)
+               ? "it has more dimensions than those of one loop"
+               : nullptr;
+  }
+
   /// A text a sample, of single characters along the last dimension.
   void add_characters(const std::string& variable, std::size_t length) {
     const std::vector<std::string> characters = root_.texts(variable);
-    if (std::any_of(characters.begin(), characters.end(), [](const auto& each) { return each.size() > 1; }))
+    if (std::any_of(characters.begin(), characters.end(), [](const auto& each) { return each.size() > 1; })) {
+      columns_.left_out.emplace(variable, "its texts have two dimensions");
       return;
+    }
     std::vector<std::string> cells(samples_);
     for (std::size_t i = 0; i < characters.size(); ++i)
       cells[i / length] += characters[i].empty() ? " " : characters[i];
@@ -306,6 +347,17 @@ void transfer_columns(Stream& stream, Columns& columns) {
     columns.names.resize(count);
     columns.lines.resize(rows);
     columns.columns.assign(count, std::vector<std::string>(rows));
+  }
+  std::size_t out = columns.left_out.size();
+  transfer(stream, out);
+  if constexpr (std::is_const_v<Columns>) {
+    for (const auto& [name, why] : columns.left_out)
+      transfer_all(stream, name, why);
+  } else {
+    for (std::string name, why; out > 0; --out) {
+      transfer_all(stream, name, why);
+      columns.left_out.emplace(name, why);
+    }
   }
   for (auto& name : columns.names)
     transfer(stream, name);
