@@ -9,6 +9,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(pugixml 1.13 REQUIRED)
 find_package(utf8cpp 3.2 REQUIRED)
 find_package(date 3.0 REQUIRED) # time stamps and zones of records
+find_package(ICU 72 REQUIRED COMPONENTS i18n uc) # words in their dates: results/records/date_words.cpp
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto) # SHA-256 of archives
 find_package(Threads REQUIRED)
 find_package(OpenMP 4.5 REQUIRED COMPONENTS CXX) # part of the compiler

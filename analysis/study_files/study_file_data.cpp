@@ -133,6 +133,11 @@ OptionKeys data_keys(Study& study) {
                 "are undone")
           .otherwise("stamps are taken as they stand")
           .allow("a name of the IANA time zone database"),
+      key::text("language", o.language,
+                "language of the names of months and of the words for before and after noon in the stamps, "
+                "such as `\"it\"` or `\"pt_BR\"`")
+          .otherwise("found, if the words mean the same in all languages that have them")
+          .allow("a language of CLDR"),
       key::choice("date_order", o.date_order,
                   {"automatic", "year-month-day", "day-month-year", "month-day-year"},
                   "order of day, month and year; detected from numbers above 12 or points between them"),

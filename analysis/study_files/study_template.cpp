@@ -31,6 +31,7 @@ constexpr const char* kCostNote =
 
 constexpr double kStepsOfFastest = 10.0;  // samples in the smallest time constant, unless that makes ...
 constexpr double kMostSamples = 150.0;    // ... more than this until the slowest channel has settled
+constexpr double kSeenBehind = 3.0;       // dead times in the horizon: what an MV does is seen in it
 constexpr double kNoise = 0.01;           // of the size of a CV
 
 double rounded(double value) {
@@ -93,6 +94,7 @@ Guess::Guess(const StudySketch& sketch) : size(sketch.size), gain(sketch.plant.G
   }
   if (shortest == kInfinity)  // gains and dead times alone
     shortest = longest = settled = std::max(dead_time, 1.0);
+  settled = std::max(settled, kSeenBehind * dead_time);
   for (Eigen::Index cv = 0; cv < G.rows(); ++cv)
     if (G.is_integrating(cv))  // what it moves until the others have settled
       gain.row(cv) *= settled;

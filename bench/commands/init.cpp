@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -101,33 +102,48 @@ void require_model(const SketchWords& words) {
                      "--gains with --time-constants, --channel for each channel, or --step-response");
 }
 
-/// Puts what a file of records shows into what the options leave open.
-void take_from_data(const DataSketch& data, StudySketch& sketch, const SketchWords& words) {
-  const auto two_digits = [](double value) { return std::stod(fmt::format("{:.2g}", value)); };
+/// Puts what a file of records shows into what the options leave open, and says what that was.
+std::vector<std::string> take_from_data(const DataSketch& data, StudySketch& sketch,
+                                        const std::optional<StepModel>& steps, const SketchWords& words) {
+  const auto rounded = [](double value, int digits) {
+    return std::stod(fmt::format("{:.{}g}", value, digits));
+  };
   constexpr double kMove = 3.0;  // of a setpoint, in standard deviations of the record
+  bool noise = false, moves = false;
   sketch.noise.assign(sketch.plant.cvs.size(), 0.0);
   for (std::size_t i = 0; i < sketch.plant.cvs.size(); ++i) {
     const std::string& name = sketch.plant.cvs[i].name;
-    if (const auto noise = data.noise.find(name); noise != data.noise.end())
-      sketch.noise[i] = noise->second;
+    if (const auto found = data.noise.find(name); found != data.noise.end() && found->second > 0) {
+      sketch.noise[i] = found->second;
+      noise = true;
+    }
     const bool sized = std::any_of(words.setpoints.begin(), words.setpoints.end(),
                                    [&](const std::string& text) { return text.starts_with(name + "="); });
     if (const auto spread = data.spread.find(name);
-        !sized && spread != data.spread.end() && spread->second > 0)
-      sketch.size(static_cast<Eigen::Index>(i)) = two_digits(kMove * spread->second);
+        !sized && spread != data.spread.end() && spread->second > 0) {
+      sketch.size(static_cast<Eigen::Index>(i)) = rounded(kMove * spread->second, 2);
+      moves = moves || !sketch.ranges[i];
+    }
   }
   constexpr double kOftener = 0.2;  // than the time constants ask for: the historian is faster than the MPC
   const double guessed = parse_study(study_template(sketch), "study").controller.sample_time;
-  if (!words.sample_time && data.step >= kOftener * guessed)
-    sketch.sample_time = two_digits(data.step);
+  const bool slow = steps ? data.step > guessed : data.step >= kOftener * guessed;
+  const bool sampled = !words.sample_time && slow;
+  if (sampled)
+    sketch.sample_time = rounded(data.step, 6);
+  std::vector<std::string> taken;
+  for (const auto& [is, what] :
+       {std::pair(noise, "the noise in [simulation]"), std::pair(moves, "how far setpoints move"),
+        std::pair(sampled, "the sample time in [controller], one row of the file")})
+    if (is)
+      taken.emplace_back(what);
+  return taken;
 }
 
 /// A comment before [data] on what else is guessed from the file.
-std::string words_on_guesses(const DataSketch& data, const StudySketch& sketch, const SketchWords& words) {
-  std::string text = fmt::format(
-      "\n# From {} as well: the noise in [simulation], and how far setpoints move{}.\n", data.file,
-      !words.sample_time && sketch.sample_time ? ", and the sample time in [controller], one row of the file"
-                                               : "");
+std::string words_on_guesses(const DataSketch& data, const std::vector<std::string>& taken) {
+  std::string text =
+      taken.empty() ? "\n" : fmt::format("\n# From {} as well: {}.\n", data.file, fmt::join(taken, ", and "));
   for (const auto& [variable, period] : data.periods) {
     const bool is_cv = data.noise.contains(variable);
     text += fmt::format(
@@ -169,13 +185,15 @@ ExitCode init(InitArguments arguments) {
   if (!steps)
     require_model(arguments.words);
   StudySketch sketch = sketch_of(arguments.words, to_stdout ? "my-plant" : name_of_file(arguments.output));
-  if (steps)
+  if (steps) {
     steps->put_into(sketch.plant);
+    sketch.sample_time = arguments.words.sample_time.value_or(steps->interval);
+  }
   std::string of_data;
   if (!arguments.data.empty()) {
     const DataSketch data = data_sketch(sketch.plant, load_record_columns(arguments.data, DataOptions()));
-    take_from_data(data, sketch, arguments.words);
-    of_data = words_on_guesses(data, sketch, arguments.words) + data.table;
+    const std::vector<std::string> taken = take_from_data(data, sketch, steps, arguments.words);
+    of_data = words_on_guesses(data, taken) + data.table;
   }
   const std::string text = study_template(sketch) + of_data;
   const Study study = parse_study(text, arguments.output);
@@ -237,7 +255,7 @@ void add_init(CommandSet& commands) {
       ->needs("--step-response")
       ->check(positive_number());
   app.add_option("--sample-time", options->words.sample_time,
-                 "Sample time (default: from the time constants)")
+                 "Sample time (default: the time between two coefficients, else from the time constants)")
       ->check(positive_number());
   app.add_option("--range", options->words.ranges, "Range in which the controller holds a CV, NAME=LOW:HIGH")
       ->allow_extra_args(false);

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,14 +14,18 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "results/files/foreign_content.hpp"
+#include "results/files/utf8.hpp"
 #include "results/records/record_file.hpp"
 #include "scenarios/toml/toml_table.hpp"
+#include "scenarios/toml/toml_values.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr const char* kTimeColumn = "time";
 constexpr double kUnevenShare = 1e-6;  // of an interval
+constexpr std::size_t kMostVariables = 200;
 
 Eigen::VectorXd numbers_in(const RecordColumns& columns, std::size_t column) {
   Eigen::VectorXd values(static_cast<Eigen::Index>(columns.rows()));
@@ -25,7 +34,7 @@ Eigen::VectorXd numbers_in(const RecordColumns& columns, std::size_t column) {
     const std::optional<double> number = columns.number(cell);
     if (!number || !std::isfinite(*number))
       throw InputError(fmt::format("{}:{}: {}", columns.file, columns.lines[row], columns.names[column]),
-                       fmt::format("'{}'", cell), "a finite number in every row");
+                       fmt::format("'{}'", cut_utf8(cell, kShownBytes)), "a finite number in every row");
     values(static_cast<Eigen::Index>(row)) = *number;
   }
   return values;
@@ -62,6 +71,97 @@ double step_interval_of(RecordColumns& columns, std::optional<double> stated) {
   return interval;
 }
 
+/// The digits of a number behind its point, less its power of ten, and those from its first one that is not 0
+/// on.
+std::pair<int, int> digits_of(const std::string& cell, char decimal) {
+  const std::size_t end = std::min(cell.find_first_of("eE"), cell.size());
+  const std::size_t point = std::min(cell.find(decimal), end), first = cell.find_first_of("123456789");
+  const int power = end < cell.size() ? std::atoi(cell.c_str() + end + 1) : 0;
+  const auto count = [&](std::size_t from) {
+    return static_cast<int>(std::count_if(cell.begin() + static_cast<std::ptrdiff_t>(std::min(from, end)),
+                                          cell.begin() + static_cast<std::ptrdiff_t>(end),
+                                          [](char c) { return c >= '0' && c <= '9'; }));
+  };
+  return {count(point) - power, count(first)};
+}
+
+/// What the coefficients in a column may be off by: half of the last digit that the column shows, whether it
+/// has so many behind the point or so many in all, within what a search can find and what is negligible.
+Eigen::VectorXd tolerances_of(const RecordColumns& columns, std::size_t column,
+                              const Eigen::VectorXd& coefficients) {
+  constexpr double kOfSearch = 1e-11;  // of the largest
+  constexpr double kHalf = 0.5 + 1e-9;
+  int behind_point = 0, in_all = 1;
+  for (const std::string& cell : columns.columns[column]) {
+    const auto [behind, all] = digits_of(cell, columns.decimal);
+    behind_point = std::max(behind_point, behind);
+    in_all = std::max(in_all, all);
+  }
+  const double largest = coefficients.cwiseAbs().maxCoeff(), fixed = std::pow(10.0, -behind_point);
+  const auto tolerance = [&](double value) {
+    const double floating =
+        value == 0.0 ? 0.0 : std::pow(10.0, std::floor(std::log10(std::abs(value))) + 1.0 - in_all);
+    return std::clamp(kHalf * std::max(fixed, floating), kOfSearch * largest, kNegligibleOfPlant * largest);
+  };
+  return coefficients.unaryExpr(tolerance);
+}
+
+/// CV and input in "CV/INPUT".
+std::pair<std::string, std::string> channel_in(const std::string& heading, const std::string& file) {
+  const std::size_t slash = heading.find('/');
+  const auto trimmed = [](std::string text) {
+    text.erase(0, text.find_first_not_of(" \t"));
+    return text.erase(text.find_last_not_of(" \t") + 1);
+  };
+  const auto refuse = [&](const char* allowed) {
+    throw InputError(file, fmt::format("the column '{}'", cut_utf8(heading, kShownBytes)), allowed);
+  };
+  std::pair<std::string, std::string> channel;
+  if (slash != std::string::npos)
+    channel = {trimmed(heading.substr(0, slash)), trimmed(heading.substr(slash + 1))};
+  if (channel.first.empty() || channel.second.empty())
+    refuse("CV/INPUT, or time");
+  for (const std::string& name : {channel.first, channel.second})
+    if (!is_name(name))
+      refuse("CV/INPUT, or time; names of 1 to 64 letters, digits, '_' and '-'");
+  return channel;
+}
+
+/// A column of a file that is a channel.
+struct ChannelColumn {
+  std::pair<std::string, std::string> channel;
+  std::size_t column;
+};
+
+/// All columns but that of the time, before any of them is fitted.
+std::vector<ChannelColumn> channel_columns(const RecordColumns& columns, std::optional<std::size_t> time,
+                                           const std::string& file) {
+  std::vector<ChannelColumn> found;
+  std::map<std::pair<std::string, std::string>, std::size_t> places;
+  std::set<std::string> cvs, inputs;
+  for (std::size_t column = 0; column < columns.names.size(); ++column) {
+    if (column == time)
+      continue;
+    const std::string& name = columns.names[column];
+    const auto channel = channel_in(name, file);
+    if (const auto first = places.emplace(channel, column); !first.second)
+      throw InputError(
+          fmt::format("{}: {}", file, cut_utf8(name, kShownBytes)),
+          fmt::format("the columns {} and {} for this channel", first.first->second + 1, column + 1),
+          "one column for each channel");
+    cvs.insert(channel.first);
+    inputs.insert(channel.second);
+    found.push_back({channel, column});
+  }
+  if (std::max(cvs.size(), inputs.size()) > kMostVariables)
+    throw InputError(file, fmt::format("{} CVs and {} inputs", cvs.size(), inputs.size()),
+                     fmt::format("at most {} of each", kMostVariables));
+  for (const std::string& cv : cvs)
+    if (inputs.contains(cv))
+      throw InputError(file, fmt::format("'{}' as a CV and as an input", cv), "a name for each variable");
+  return found;
+}
+
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end())
     names.push_back(name);
@@ -74,6 +174,19 @@ Eigen::Index place_in(const std::vector<std::string>& names, const std::string& 
   if (found == names.end())
     throw InputError(column, with_nearest(name, names), fmt::format("{}", fmt::join(names, ", ")));
   return found - names.begin();
+}
+
+StepModel::Channel fitted(const std::pair<std::string, std::string>& channel,
+                          const Eigen::VectorXd& coefficients, double interval,
+                          const Eigen::VectorXd& tolerances) {
+  StepResponseFit fit = fit_step_coefficients(coefficients, interval, tolerances.maxCoeff());
+  const std::optional<TransferFunction> shorter =
+      with_fewest_digits(fit.channel, coefficients, interval, tolerances);
+  fit.channel = shorter.value_or(fit.channel);
+  const bool negligible = fit.largest_error <= kNegligibleOfPlant;
+  return {channel.first, channel.second, fit,
+          shorter || negligible ? fit.channel : by_coefficients(fit, coefficients, interval),
+          shorter.has_value()};
 }
 
 }  // namespace
@@ -110,9 +223,10 @@ std::string StepModel::report() const {
     const bool integrates = G.is_integrating();
     const Eigen::Index lags = G.order() - (integrates ? 1 : 0);
     text += fmt::format(
-        "{}/{}: {} {:.4g}, dead time {:.4g}, {} {}; off by at most {:.2g} %{}\n", channel.cv, channel.input,
+        "{}/{}: {} {:.4g}, dead time {:.4g}, {} {}; {}{}\n", channel.cv, channel.input,
         integrates ? "integrates, rate" : "gain", integrates ? G.rate_gain() : G.static_gain(), G.dead_time(),
-        lags, lags == 1 ? "lag" : "poles", 100 * channel.fit.largest_error,
+        lags, lags == 1 ? "lag" : "poles",
+        channel.exact ? "exact" : fmt::format("off by at most {:.2g} %", 100 * channel.fit.largest_error),
         channel.function.step_coefficients() ? ", so that the study has the coefficients" : "");
   }
   return text;
@@ -121,23 +235,14 @@ std::string StepModel::report() const {
 StepModel read_step_model(const std::string& file, std::optional<double> interval) {
   RecordColumns columns = load_record_columns(file, DataOptions());
   const double between = step_interval_of(columns, interval);
-  StepModel model{file, {}};
-  for (std::size_t column = 0; column < columns.names.size(); ++column) {
-    const std::string& name = columns.names[column];
-    if (name == kTimeColumn)
-      continue;
-    const std::size_t slash = name.find('/');
-    if (slash == std::string::npos)
-      throw InputError(file, fmt::format("the column '{}'", name), "CV/INPUT, or time");
-    const Eigen::VectorXd coefficients = numbers_in(columns, column);
+  StepModel model{file, between, {}};
+  for (const ChannelColumn& each : channel_columns(columns, columns.find(kTimeColumn), file)) {
+    const Eigen::VectorXd coefficients = numbers_in(columns, each.column);
     try {
-      const StepResponseFit fit = fit_step_coefficients(coefficients, between);
-      model.channels.push_back({name.substr(0, slash), name.substr(slash + 1), fit,
-                                fit.largest_error > kNegligibleOfPlant
-                                    ? by_coefficients(fit, coefficients, between)
-                                    : fit.channel});
+      model.channels.push_back(
+          fitted(each.channel, coefficients, between, tolerances_of(columns, each.column, coefficients)));
     } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}: {}", file, name, error.what()));
+      throw InputError(fmt::format("{}: {}: {}", file, columns.names[each.column], error.what()));
     }
   }
   return model;

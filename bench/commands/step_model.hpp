@@ -15,9 +15,11 @@ struct StepModel {
     std::string cv, input;
     StepResponseFit fit;
     TransferFunction function;  ///< the fit, or the coefficients where it leaves more than is negligible
+    bool exact = false;         ///< the fit gives the coefficients in all of their digits
   };
 
   std::string file;
+  double interval = 0.0;          ///< between two coefficients
   std::vector<Channel> channels;  ///< in the order of the columns
 
   std::vector<std::string> cvs() const;

@@ -234,8 +234,9 @@ StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& respo
   return fit;
 }
 
-StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval) {
-  StepResponseFit fit = fit_step_response(coefficients, interval, 0.0, kNegligibleOfCoefficients);
+StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval,
+                                      double negligible) {
+  StepResponseFit fit = fit_step_response(coefficients, interval, negligible, kNegligibleOfCoefficients);
   const ResponseEnd end = response_end(fit.channel, coefficients, interval);
   const Eigen::Index before = coefficients.size() - 1 - coefficients.size() / 8;
   const bool moves =
@@ -254,6 +255,25 @@ TransferFunction by_coefficients(const StepResponseFit& fit, const Eigen::Vector
   if (fit.largest_error <= kSameResponse && std::abs(end.last - end.fitted) <= kSameResponse * end.largest)
     return fit.channel;
   return fit.channel.with_step_coefficients(coefficients, interval);
+}
+
+std::optional<TransferFunction> with_fewest_digits(const TransferFunction& channel,
+                                                   const Eigen::VectorXd& coefficients, double interval,
+                                                   const Eigen::VectorXd& tolerances) {
+  constexpr int kMostDigits = 16;  // 17 are the number itself
+  for (int digits = 1; digits <= kMostDigits; ++digits) {
+    const auto shortened = [digits](double value) {
+      return std::stod(fmt::format("{:.{}g}", value, digits));
+    };
+    const TransferFunction shorter(channel.numerator().unaryExpr(shortened),
+                                   channel.denominator().unaryExpr(shortened),
+                                   shortened(channel.dead_time()));
+    const Eigen::VectorXd response =
+        step_response(TransferMatrix{{shorter}}, interval, coefficients.size()).front().transpose();
+    if (((response - coefficients).cwiseAbs().array() <= tolerances.array()).all())
+      return shorter;
+  }
+  return std::nullopt;
 }
 
 ResponseEnd response_end(const TransferFunction& fit, const Eigen::Ref<const Eigen::VectorXd>& response,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "base/non_finite.hpp"
@@ -39,14 +41,22 @@ StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& respo
 /// The transfer function that fits the coefficients of a step response, as dynamic matrix control has them:
 /// values 1, 2, ... intervals after a step of 1. Errors: InputError as fit_step_response(), and for a
 /// response that has not settled, because the coefficients are too few: it still moves at its end, more than
-/// a tenth of the largest one away from where the fit goes.
-StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval);
+/// a tenth of the largest one away from where the fit goes. `negligible` is what their digits leave open.
+StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval,
+                                      double negligible = 0.0);
 
 /// The channel that has these coefficients (StepCoefficients), with the parameters of a fit to them: the
 /// transfer function alone where it gives every coefficient, and what follows the last one, to 1e-9 of the
 /// largest.
 TransferFunction by_coefficients(const StepResponseFit& fit, const Eigen::VectorXd& coefficients,
                                  double interval);
+
+/// `channel` with the fewest digits in its numbers, the same in all of them, with which its response at 1, 2,
+/// ... intervals is off by at most `tolerances` from the coefficients: the numbers as they were given where
+/// the coefficients were made of some. None where no number of digits does.
+std::optional<TransferFunction> with_fewest_digits(const TransferFunction& channel,
+                                                   const Eigen::VectorXd& coefficients, double interval,
+                                                   const Eigen::VectorXd& tolerances);
 
 /// Where a response ends, and where the fit goes: values, or of a channel that integrates rates.
 struct ResponseEnd {

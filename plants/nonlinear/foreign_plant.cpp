@@ -95,7 +95,10 @@ void ForeignPlant::reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) 
   try {
     settle(model_.operating_input + steady_input);
   } catch (const ForeignFailure& error) {
-    throw NoSteadyState("simulation of the plant at rest", error.what(), "one that runs");
+    const std::string file = model_.foreign->file().filename().string();
+    throw NoSteadyState(file.empty() ? std::string("simulation of the plant at rest")
+                                     : fmt::format("simulation of the plant ({}) at rest", file),
+                        error.what(), "one that runs");
   }
 }
 

@@ -26,10 +26,7 @@ class Fmi2Calls : public FmuCalls {
       : library_(package, "fmi2", fmi2::kVersion),
         set_(library_.function<fmi2::SetReal>("SetReal")),
         get_(library_.function<fmi2::GetReal>("GetReal")) {
-    if (const std::string platform = library_.function<fmi2::GetTypesPlatform>("GetTypesPlatform")();
-        platform != fmi2::kTypesPlatform)
-      throw ForeignFailure(
-          fmt::format("its library has the types '{}', not '{}'", platform, fmi2::kTypesPlatform));
+    library_.require_text("GetTypesPlatform", fmi2::kTypesPlatform);
     instance_ = library_.function<fmi2::Instantiate>("Instantiate")(
         "mpmbench", type, package.description().guid.c_str(), package.resources().c_str(), &callbacks_,
         fmi2::kFalse, fmi2::kTrue);

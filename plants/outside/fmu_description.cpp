@@ -143,10 +143,12 @@ FmuDescription parse_fmu_description(const std::string& xml, const std::string& 
   if (!root)
     throw InputError(fmt::format("{}: {}", file, kDescriptionFile), "no element fmiModelDescription",
                      "the description of an FMU");
-  const std::string written = attribute_of(root, "fmiVersion", file);
+  const std::string written = root.attribute("fmiVersion").value();
   if (written != fmi2::kVersion && written != fmi3::kVersion)
-    throw InputError(fmt::format("{}: fmiVersion", file), fmt::format("'{}'", written),
-                     fmt::format("'{}' or '{}'", fmi2::kVersion, fmi3::kVersion));
+    throw InputError(
+        fmt::format("{}: {}: fmiVersion", file, kDescriptionFile),
+        written.empty() ? "nothing" : fmt::format("'{}'", foreign_text(written, kShownOfXml)),
+        fmt::format("'{}' or '{}'", fmi2::kVersion, fmi3::kVersion));
   const FmiVersion version = written == fmi2::kVersion ? FmiVersion::two : FmiVersion::three;
   pugi::xml_node kind = root.child("CoSimulation");
   const bool integrates = kind;

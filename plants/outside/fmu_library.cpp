@@ -1,11 +1,13 @@
 #include "plants/outside/fmu_library.hpp"
 
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "base/system/foreign_text.hpp"
 #include "base/system/forked_service.hpp"
 #include "plants/outside/fmi2.hpp"
 
@@ -58,8 +60,7 @@ FmuLibrary::FmuLibrary(const FmuPackage& package, std::string prefix, std::strin
     : prefix_(std::move(prefix)), library_(load_library(package.library())) {
   if (library_ == nullptr)
     throw ForeignFailure(fmt::format("its library cannot be loaded: {}", ::dlerror()));
-  if (const std::string found = function<fmi2::GetVersion>("GetVersion")(); found != version)
-    throw ForeignFailure(fmt::format("its library has FMI version '{}', not '{}'", found, version));
+  require_text("GetVersion", version);
 }
 
 void* FmuLibrary::symbol(const std::string& name) const {
@@ -67,6 +68,15 @@ void* FmuLibrary::symbol(const std::string& name) const {
   if (found == nullptr)
     throw ForeignFailure(fmt::format("its library has no function {}{}", prefix_, name));
   return found;
+}
+
+void FmuLibrary::require_text(const std::string& name, std::string_view text) const {
+  constexpr std::size_t kShownOfAnswer = 100;  // bytes
+  const char* const found = function<const char*()>(name)();
+  if (found == nullptr || found != text)
+    throw ForeignFailure(fmt::format(
+        "{}{} of its library gives {}, not '{}'", prefix_, name,
+        found == nullptr ? "nothing" : fmt::format("'{}'", foreign_text(found, kShownOfAnswer)), text));
 }
 
 void FmuLibrary::require(int status, const std::string& function, double now) const {

@@ -19,6 +19,8 @@ class FmuLibrary {
   Function* function(const std::string& name) const {
     return reinterpret_cast<Function*>(symbol(name));
   }
+  /// Throws ForeignFailure unless the function of this name, which takes nothing, gives this text.
+  void require_text(const std::string& name, std::string_view text) const;
   /// Throws ForeignFailure unless the status is `ok` or `warning`; both versions number them alike.
   void require(int status, const std::string& function, double now) const;
   /// Throws ForeignFailure where the FMU asks to end.

@@ -99,9 +99,9 @@ class Hdf5Group {
   template <class T>
   std::vector<T> read_list(const std::string& name) const;
 
-  // Of files that others have written, whatever types they chose. A variable whose values HDF5 would read in
-  // another file (external storage, an external link, a virtual variable) is refused, and so is one of more
-  // than 400 MB:
+  // Of files that others have written, whatever types they chose. These throw InputError for what cannot be
+  // read: a variable whose values HDF5 would read in another file (external storage, an external link, a
+  // virtual variable), one of more than 400 MB, and values or attributes of another type:
 
   /// Names of the variables of this group, in the order of the alphabet.
   std::vector<std::string> variables() const;

@@ -29,7 +29,7 @@ bool is_number_type(hid_t type) {
 /// Refuses what HDF5 would read in another file, which somebody else has chosen.
 void refuse_other_file(const hdf5::Place& place, bool other) {
   if (other)
-    place.fail("its values lie in another file");
+    place.refuse("values that lie in another file", "values in this one");
 }
 
 unsigned long file_number(const hdf5::Place& place, hid_t object) {
@@ -51,14 +51,15 @@ hdf5::Handle open_own_dataset(const hdf5::Place& place, hid_t group) {
 
 /// How many values a variable has, so many of `bytes` each that they can go to memory.
 std::size_t bounded_count(const hdf5::Place& place, const hdf5::Shape& shape, std::size_t bytes) {
+  const std::string most = fmt::format("at most {} bytes", kMostForeignBytes);
   hsize_t count = 1;
   for (const hsize_t length : shape) {
     if (length != 0 && count > kMostForeignBytes / length)
-      place.fail(fmt::format("shape ({}), too many values", fmt::join(shape, ", ")));
+      place.refuse(fmt::format("shape ({}), too many values", fmt::join(shape, ", ")), most);
     count *= length;
   }
   if (count > kMostForeignBytes / bytes)
-    place.fail(fmt::format("{} values of {} bytes, too many", count, bytes));
+    place.refuse(fmt::format("{} values of {} bytes, too many", count, bytes), most);
   return count;
 }
 
@@ -90,8 +91,8 @@ struct ForeignAttribute {
         place.own(H5Aopen(dataset, place.name.c_str(), H5P_DEFAULT), H5Aclose, "open it");
     hdf5::Handle type = place.own(H5Aget_type(attribute.get()), H5Tclose, "read its type");
     hdf5::Handle space = place.own(H5Aget_space(attribute.get()), H5Sclose, "read its shape");
-    if (H5Sget_simple_extent_npoints(space.get()) != 1)
-      place.fail("several values where one is expected");
+    if (const hssize_t values = H5Sget_simple_extent_npoints(space.get()); values != 1)
+      place.refuse(fmt::format("{} values", values), "one");
     return ForeignAttribute{std::move(attribute), std::move(type), std::move(space)};
   }
 };
@@ -175,7 +176,7 @@ std::vector<std::string> Hdf5Group::references(const std::string& variable) cons
   const hdf5::Place place = state_->place("variable", variable);
   const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
   if (!is_reference(variable))
-    place.fail("no references");
+    place.refuse("no references", "references");
   std::vector<hobj_ref_t> found(bounded_count(place, shape_of_dataset(place, dataset), sizeof(std::string)));
   if (!found.empty())
     place.check(H5Dread(dataset.get(), H5T_STD_REF_OBJ, H5S_ALL, H5S_ALL, H5P_DEFAULT, found.data()),
@@ -195,7 +196,7 @@ std::vector<double> Hdf5Group::numbers(const std::string& variable) const {
   const hdf5::Place place = state_->place("variable", variable);
   const hdf5::Handle dataset = open_own_dataset(place, state_->group.get());
   if (!is_number(variable))
-    place.fail("no numbers");
+    place.refuse("no numbers", "numbers");
   std::vector<double> values(bounded_count(place, shape_of_dataset(place, dataset), sizeof(double)));
   if (!values.empty())
     place.check(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
@@ -209,7 +210,7 @@ std::vector<std::string> Hdf5Group::texts(const std::string& variable) const {
   const hdf5::Handle type = place.own(H5Dget_type(dataset.get()), H5Tclose, "read its type");
   const hdf5::Handle space = place.own(H5Dget_space(dataset.get()), H5Sclose, "read its shape");
   if (!is_text_type(type.get()))
-    place.fail("no texts");
+    place.refuse("no texts", "texts");
   const std::size_t bytes = std::max(H5Tget_size(type.get()), sizeof(std::string));
   return any_texts(type.get(), space.get(), bounded_count(place, shape_of_dataset(place, dataset), bytes),
                    [&](hid_t as, void* buffer) {
@@ -226,7 +227,7 @@ std::optional<double> Hdf5Group::number_attribute(const std::string& variable,
   if (!found)
     return std::nullopt;
   if (!is_number_type(found->type.get()))
-    place.fail("no number");
+    place.refuse("no number", "a number");
   double value = 0.0;
   place.check(H5Aread(found->attribute.get(), H5T_NATIVE_DOUBLE, &value), "read it");
   return value;
@@ -240,7 +241,7 @@ std::optional<std::string> Hdf5Group::text_attribute(const std::string& variable
   if (!found)
     return std::nullopt;
   if (!is_text_type(found->type.get()))
-    place.fail("no text");
+    place.refuse("no text", "a text");
   return any_texts(found->type.get(), found->space.get(), 1,
                    [&](hid_t as, void* buffer) {
                      place.check(H5Aread(found->attribute.get(), as, buffer), "read it");

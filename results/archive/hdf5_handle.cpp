@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/error.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm::hdf5 {
@@ -24,6 +25,10 @@ void silence_library() {
 
 void Place::fail(const std::string& problem) const {
   throw ArchiveError(fmt::format("{}: {} '{}{}': {}", file, what, parent, name, problem));
+}
+
+void Place::refuse(const std::string& found, const std::string& allowed) const {
+  throw InputError(fmt::format("{}: {} '{}{}'", file, what, parent, name), found, allowed);
 }
 
 void Place::check(herr_t result, const char* action) const {

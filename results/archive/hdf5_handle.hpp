@@ -43,6 +43,8 @@ struct Place {
   std::string file, what, parent, name;
 
   [[noreturn]] void fail(const std::string& problem) const;
+  /// InputError, of what somebody else has written and nobody here can read.
+  [[noreturn]] void refuse(const std::string& found, const std::string& allowed) const;
   /// fail() with the library's own account when `result` says so.
   void check(herr_t result, const char* action) const;
   Handle own(hid_t id, Handle::Close close, const char* action) const;

@@ -85,10 +85,11 @@ std::vector<std::string> CsvReader::fields_of(std::string_view line) const {
   std::vector<std::string> fields;
   for (std::size_t at = 0; at <= line.size();) {
     std::string field;
-    const std::size_t first = std::min(line.find_first_not_of(" \t", at), line.size());
-    const std::size_t quote = line.find('"', at);
-    if (quote == first && line.find(separator_, at) > first) {
-      std::size_t close = quote + 1;
+    std::size_t first = at;  // of the field, without the blanks before it
+    while (first < line.size() && (line[first] == ' ' || line[first] == '\t') && line[first] != separator_)
+      ++first;
+    if (first < line.size() && line[first] == '"' && line[first] != separator_) {
+      std::size_t close = first + 1;
       for (;; ++close) {
         const std::size_t next = line.find('"', close);
         if (next == std::string_view::npos)
@@ -125,6 +126,10 @@ void CsvReader::read_heading() {
   if (named && !next_line(line))
     return;
   separator_ = !form_.separator.empty() ? form_.separator.front() : named.value_or(found_separator(line));
+  if (const auto columns = static_cast<std::size_t>(std::count(line.begin(), line.end(), separator_)) + 1;
+      columns > kMostForeignColumns)
+    throw InputError(place(), fmt::format("a heading of {} columns", columns),
+                     fmt::format("at most {}: leave out the others", kMostForeignColumns));
   heading_ = fields_of(line);
   for (const std::string& name : heading_)
     if (name.size() > kLongestCsvName)

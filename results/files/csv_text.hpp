@@ -8,8 +8,8 @@
 namespace mpm {
 
 inline constexpr std::size_t kLongestCsvName = 1000;  ///< bytes of the name of a column
-/// Of a file of somebody else: rows times columns.
-inline constexpr std::size_t kMostForeignCells = 50'000'000;
+/// Of a file of somebody else: columns, and rows times columns.
+inline constexpr std::size_t kMostForeignColumns = 50'000, kMostForeignCells = 50'000'000;
 
 /// How a CSV text may differ from the usual one.
 struct CsvForm {
@@ -31,7 +31,7 @@ struct CsvForm {
 ///
 /// Errors: InputError "FILE:LINE: found ...; allowed: ..." for bytes that are no text, a quote that breaks
 /// the rule, a row with another number of fields than the heading, a name of more than kLongestCsvName
-/// bytes, and more than CsvForm::most_cells cells.
+/// bytes, more than kMostForeignColumns columns, and more than CsvForm::most_cells cells.
 class CsvReader {
  public:
   /// Reads up to the heading; `text` must outlive the reader. Without a heading heading() is empty.

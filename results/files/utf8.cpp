@@ -1,5 +1,6 @@
 #include "results/files/utf8.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -70,6 +71,12 @@ std::string utf8_of_utf16(std::string_view bytes) {
   }
   std::string text;
   utf8::utf16to8(units.begin(), units.end(), std::back_inserter(text));
+  return text;
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return text;
 }
 

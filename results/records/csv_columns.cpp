@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "results/records/date_words.hpp"
 #include "results/records/written_date.hpp"
 
 namespace mpm {

@@ -1,11 +1,14 @@
 #include "results/records/data_sketch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,18 +19,15 @@
 #include "base/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "results/records/implausible_values.hpp"
+#include "results/records/opc_quality.hpp"
+#include "results/records/quality_columns.hpp"
 #include "results/records/stamped_rows.hpp"
 #include "scenarios/toml/nearest_name.hpp"
 #include "scenarios/toml/toml_literal.hpp"
 
 namespace mpm {
 namespace {
-
-std::string small_letters(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 /// Whether the word stands in the name with no letter or digit beside it, as "f" in "fi_f" and not in "flow".
 bool has_word(const std::string& name, const std::string& word) {
@@ -46,6 +46,14 @@ double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Is it called so: "fc11.mode", "fc11_quality"?
+bool says_mode_or_quality(const std::string& name) {
+  static constexpr std::array<std::string_view, 6> kWords{"mode", "quality", "status", "qual", "q", "qc"};
+  const std::size_t last = name.find_last_of("._ -/:");
+  return last != std::string::npos &&
+         std::find(kWords.begin(), kWords.end(), std::string_view(name).substr(last + 1)) != kWords.end();
 }
 
 /// A name as a key of TOML.
@@ -67,6 +75,26 @@ std::string three_digits(double value) {
   return fmt::format("{:.3g}", value);
 }
 
+/// Without those of bad quality and those that cannot be measured.
+std::vector<double> measured_values(const RecordColumns& file, std::size_t column) {
+  const std::vector<std::string>& cells = file.columns[column];
+  std::vector<double> values(cells.size(), kNaN);
+  for (std::size_t row = 0; row < cells.size(); ++row)
+    values[row] = file.number(cells[row]).value_or(kNaN);
+  if (const auto quality = quality_column_of(file, column); quality && are_qualities(file, *quality)) {
+    const OpcCodes codes = opc_codes(file, *quality);
+    for (std::size_t row = 0; row < cells.size(); ++row)
+      if (const std::string& cell = file.columns[*quality][row];
+          !cell.empty() && !is_good_opc(file, cell, codes))
+        values[row] = kNaN;
+  }
+  for (const std::size_t row : implausible_rows(values, -kInfinity, kInfinity, true))
+    values[row] = kNaN;
+  values.erase(std::remove_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }),
+               values.end());
+  return values;
+}
+
 /// The numbers of a column, one after the other.
 struct ColumnLook {
   std::vector<double> values;
@@ -74,9 +102,7 @@ struct ColumnLook {
   double changes = 0.0;  ///< share of the values that differ from the one before
 
   ColumnLook(const RecordColumns& file, std::size_t column) {
-    for (const std::string& cell : file.columns[column])
-      if (const auto value = file.number(cell))
-        values.push_back(*value);
+    values = measured_values(file, column);
     const auto count = static_cast<double>(values.size());
     for (const double value : values) {
       mean += value / count;
@@ -175,7 +201,7 @@ class DataSketcher {
   DataSketch sketch() {
     for (const auto* list : {&plant_.cvs, &plant_.mvs, &plant_.mds})
       for (const PlantModel::Variable& variable : *list)
-        find_column(variable.name);
+        find_column(variable.name, list == &plant_.mvs);
     sketch_.file = file().file;
     sketch_.step = step();
     write_table();
@@ -187,41 +213,49 @@ class DataSketcher {
   const RecordColumns& file() const { return rows_.file; }
 
   /// By its name, its name as the export writes it, a part of another name, or the nearest name.
-  void find_column(const std::string& variable) {
+  void find_column(const std::string& variable, bool is_mv) {
     std::optional<std::size_t> found = file().find(variable);
     for (const char* prefix : {"y", "u", "d"})
       if (!found)
         found = file().find(fmt::format("{}.{}", prefix, variable));
     if (!found)
-      found = only_column_with(variable);
+      found = only_column_with(variable, is_mv);
     if (const std::string nearest = nearest_name(variable, file().names); !found && !nearest.empty())
       found = file().find(nearest);
     if (found && std::find(taken_.begin(), taken_.end(), *found) == taken_.end()) {
       taken_.push_back(*found);
       columns_.emplace_back(variable, *found);
+      looks_.emplace(*found, ColumnLook(file(), *found));
     } else {
       missing_.push_back(variable);
     }
   }
 
   /// The one column that has the variable as a word of its name ("FI_F"), or else anywhere in it; of several
-  /// the one of the measurement (PV).
-  std::optional<std::size_t> only_column_with(const std::string& variable) const {
-    std::vector<std::size_t> as_word, anywhere, measured;
-    const std::string sought = small_letters(variable);
+  /// the one of the measurement (PV), of an MV of what the controller writes (SP, OP). Its mode and its
+  /// quality are none of them.
+  std::optional<std::size_t> only_column_with(const std::string& variable, bool is_mv) const {
+    static constexpr std::array kOfMv{"sp", "op", "out", "pv"}, kOfOthers{"pv", "val", "value", "av"};
+    std::vector<std::size_t> as_word, anywhere;
+    const std::string sought = in_lower_case(variable);
     for (std::size_t column = 0; column < file().names.size(); ++column) {
-      const std::string name = small_letters(file().names[column]);
+      const std::string name = in_lower_case(file().names[column]);
+      if (name.find(sought) == std::string::npos || says_mode_or_quality(name))
+        continue;
       if (has_word(name, sought))
         as_word.push_back(column);
-      if (name.find(sought) == std::string::npos)
-        continue;
       anywhere.push_back(column);
-      if (name.ends_with("pv"))
-        measured.push_back(column);
     }
-    for (const auto* found : {&as_word, &anywhere, &measured})
+    for (const auto* found : {&as_word, &anywhere})
       if (found->size() == 1)
         return found->front();
+    for (const char* ending : is_mv ? kOfMv : kOfOthers) {
+      std::vector<std::size_t> so_called;
+      std::copy_if(anywhere.begin(), anywhere.end(), std::back_inserter(so_called),
+                   [&](std::size_t column) { return ends_with(column, ending); });
+      if (so_called.size() == 1)
+        return so_called.front();
+    }
     return std::nullopt;
   }
 
@@ -268,6 +302,7 @@ class DataSketcher {
       write_operating_point();
       write_setpoints();
       write_modes();
+      write_qualities();
     }
     for (const std::string& variable : missing_)
       line(fmt::format("# To do: no column is called like {}: add it to tags.", in_comment(variable)));
@@ -277,7 +312,7 @@ class DataSketcher {
   void write_operating_point() {
     bool deviations = true;
     for (const auto& [variable, column] : columns_) {
-      const ColumnLook look(file(), column);
+      const ColumnLook& look = looks_.at(column);
       deviations = deviations && std::abs(look.mean) <= look.deviation;
     }
     line(deviations ? "# Guess: the values are deviations already, because each mean is within one standard "
@@ -285,7 +320,7 @@ class DataSketcher {
                     : "# Guess: the means of the file; right only if the plant was at its operating point on "
                       "average.");
     line((deviations ? "# " : "") + assigned("operating_point", [&](std::size_t column) {
-           return fmt::format("{:.6g}", ColumnLook(file(), column).mean);
+           return fmt::format("{:.6g}", looks_.at(column).mean);
          }));
   }
 
@@ -296,7 +331,7 @@ class DataSketcher {
   }
 
   bool ends_with(std::size_t column, const std::string& ending) const {
-    return small_letters(file().names[column]).ends_with(ending);
+    return in_lower_case(file().names[column]).ends_with(ending);
   }
 
   void write_setpoints() {
@@ -321,6 +356,18 @@ class DataSketcher {
     line(text);
   }
 
+  void write_qualities() {
+    const std::string text = assigned("quality", [&](std::size_t column) -> std::optional<std::string> {
+      const auto quality = quality_column_of(file(), column);
+      return quality && are_qualities(file(), *quality) ? std::optional(toml_literal(file().names[*quality]))
+                                                        : std::nullopt;
+    });
+    if (text.empty())
+      return;
+    line("# Guess: the quality of each value; the words for a good one are in good_quality.");
+    line(text);
+  }
+
   bool is_md(std::size_t column) const {
     return std::any_of(columns_.begin(), columns_.end(), [&](const auto& of) {
       return of.second == column &&
@@ -333,9 +380,10 @@ class DataSketcher {
     constexpr std::size_t kMostShown = 100;
     std::size_t shown = 0;
     for (std::size_t column = 0; column < file().names.size() && shown < kMostShown; ++column) {
-      const bool taken = std::find(taken_.begin(), taken_.end(), column) != taken_.end();
+      if (std::find(taken_.begin(), taken_.end(), column) != taken_.end())
+        continue;
       const ColumnLook look(file(), column);
-      if (taken || look.values.empty())
+      if (look.values.empty())
         continue;
       line(fmt::format("{}#   {}: {}", shown++ == 0 ? "# Columns that no variable has:\n" : "",
                        in_comment(file().names[column]), look.words()));
@@ -344,7 +392,7 @@ class DataSketcher {
 
   void look_at_variables() {
     for (const auto& [variable, column] : columns_) {
-      const ColumnLook look(file(), column);
+      const ColumnLook& look = looks_.at(column);
       const auto is = [&, name = variable](const std::vector<PlantModel::Variable>& list) {
         return std::any_of(list.begin(), list.end(), [&](const auto& each) { return each.name == name; });
       };
@@ -365,6 +413,7 @@ class DataSketcher {
   DataSketch sketch_;
   std::vector<std::size_t> taken_;
   std::vector<std::pair<std::string, std::size_t>> columns_;  ///< of the variables that have one
+  std::map<std::size_t, ColumnLook> looks_;                   ///< of these columns
   std::vector<std::string> missing_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <utility>
 
@@ -27,6 +28,55 @@ bool is_filler(double value) {
   return size == nines;
 }
 
+/// A number that somebody would choose for a missing value: 100 and above, of one or two digits.
+bool is_round(double value) {
+  constexpr double kLeastRound = 100.0;
+  double digits = std::abs(value);
+  if (!(digits >= kLeastRound))
+    return false;
+  while (digits >= kLeastRound && std::fmod(digits, 10.0) == 0.0)
+    digits /= 10.0;
+  return digits < kLeastRound && digits == std::floor(digits);
+}
+
+/// Which values may stand for a missing one: those of programs, and of a signal that is measured round ones
+/// that come again.
+class Fillers {
+ public:
+  Fillers(const std::vector<double>& values, bool measured) {
+    std::vector<double> sorted;
+    if (measured)
+      std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+                   [](double value) { return !std::isnan(value) && !is_filler(value); });
+    std::sort(sorted.begin(), sorted.end());
+    std::ptrdiff_t others = 0, kinds = 0, most = 0, again = 0;
+    for (auto first = sorted.begin(); first != sorted.end();) {
+      const auto end = std::find_if(first, sorted.end(), [&](double value) { return value != *first; });
+      const std::ptrdiff_t count = end - first;
+      if (count > 1 && is_round(*first)) {
+        rounds_.push_back(*first);
+        again += count;
+      } else {
+        others += count;
+        most = std::max(most, count);
+        ++kinds;
+      }
+      first = end;
+    }
+    constexpr std::ptrdiff_t kFewestKinds =
+        10;  // of values that change as measurements do, and are no levels
+    if (kinds < kFewestKinds || again > others || 2 * most > others)
+      rounds_.clear();
+  }
+
+  bool has(double value) const {
+    return is_filler(value) || std::binary_search(rounds_.begin(), rounds_.end(), value);
+  }
+
+ private:
+  std::vector<double> rounds_;  ///< ascending
+};
+
 struct Core {
   double lower, upper;
 
@@ -46,8 +96,7 @@ Core core_of(std::vector<double> sorted, double lower, double upper) {
                    : Core{sorted[first], sorted[last]};
   };
   const auto follows = [&](std::size_t next) {
-    return core().gap(sorted[next]) <=
-           (is_filler(sorted[next]) ? kGapOfFillers : kGapOfSpikes) * core().width();
+    return core().gap(sorted[next]) <= kGapOfSpikes * core().width();
   };
   for (bool grown = true; grown;) {
     grown = false;
@@ -61,10 +110,12 @@ Core core_of(std::vector<double> sorted, double lower, double upper) {
 
 }  // namespace
 
-std::vector<std::size_t> implausible_rows(const std::vector<double>& values, double lower, double upper) {
+std::vector<std::size_t> implausible_rows(const std::vector<double>& values, double lower, double upper,
+                                          bool measured) {
+  const Fillers fillers(values, measured);
   std::vector<double> sure;
   std::copy_if(values.begin(), values.end(), std::back_inserter(sure),
-               [](double value) { return !std::isnan(value) && !is_filler(value); });
+               [&](double value) { return !std::isnan(value) && !fillers.has(value); });
   if (sure.empty())
     return {};
   const Core core = core_of(std::move(sure), lower, upper);
@@ -75,7 +126,7 @@ std::vector<std::size_t> implausible_rows(const std::vector<double>& values, dou
     const double value = values[row];
     if (std::isnan(value))
       continue;
-    if (is_filler(value)) {
+    if (fillers.has(value)) {
       if (core.gap(value) > kGapOfFillers * core.width())
         rows.push_back(row);
     } else if (has_width && core.gap(value) > kGapOfSpikes * core.width()) {

@@ -12,10 +12,13 @@ namespace mpm {
 ///
 /// - fillers: values that programs write for a missing one (-9999 and other nines, -999.25, the ends of
 ///   integers of 16 and 32 bits, 1e20 and above), when the gap to the core is 10 times as wide as the core;
+///   of a signal that is `measured`, and has no few levels, also round values (100 and above, of one or two
+///   digits) that stand there twice or more;
 /// - spikes: any other values, when the gap is 1000 times as wide as the core, of at most 5 rows between two
 ///   of the core.
 ///
 /// A core without width, as of a valve that moves seldom, has fillers only.
-std::vector<std::size_t> implausible_rows(const std::vector<double>& values, double lower, double upper);
+std::vector<std::size_t> implausible_rows(const std::vector<double>& values, double lower, double upper,
+                                          bool measured = false);
 
 }  // namespace mpm

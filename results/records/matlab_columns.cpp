@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -44,55 +46,72 @@ std::string text_of_codes(const std::vector<double>& codes) {
 class MatlabReader {
  public:
   MatlabReader(const Hdf5Group& root, std::string file) : file_(std::move(file)) {
-    take_group(root);
-    for (const std::string& name : root.groups())
-      if (!name.starts_with('#'))
-        take_group(root.group(name));
+    take_group(root, "");
+    for (const std::string& name : root.groups()) {
+      if (name.starts_with('#'))
+        continue;
+      const Hdf5Group group = root.group(name);
+      if (group.has_attribute("MATLAB_sparse")) {
+        left_out_.emplace(name, "it is sparse: save full(...) of it");
+        continue;
+      }
+      take_group(group, name + ".");
+      left_out_.emplace(name, "it is a struct, whose fields are columns");
+    }
   }
 
   RecordColumns columns(const std::string& time) const {
     const std::size_t rows = row_count(time);
     RecordColumns made;
     made.file = file_;
+    made.left_out = left_out_;
     for (const MatlabArray& array : arrays_)
       if (rows > 1 && array.length() == rows)
         add(made, array, rows);
+      else
+        made.left_out.emplace(
+            array.name, rows > 1 ? fmt::format("it has {} rows, and others have {}", array.length(), rows)
+                                 : fmt::format("it has {} rows", array.length()));
     made.lines.resize(rows);
     std::iota(made.lines.begin(), made.lines.end(), std::size_t{1});
     if (made.names.empty())
       throw InputError(
-          file_, "no arrays of numbers with a row a sample",
+          file_, "no arrays of numbers with a row a sample" + left_out_text(made),
           "vectors, matrices with names in a cell array, or the fields of a struct; a table or timetable as "
           "table2struct(T, \"ToScalar\", true)");
     return made;
   }
 
  private:
-  void take_group(const Hdf5Group& group) {
+  /// `prefix` stands before names that others have as well.
+  void take_group(const Hdf5Group& group, const std::string& prefix) {
     for (const std::string& name : group.variables())
-      take(group, name);
+      take(group, name, prefix);
   }
 
-  void take(const Hdf5Group& group, const std::string& name) {
+  void take(const Hdf5Group& group, const std::string& name, const std::string& prefix) {
     const std::vector<std::size_t> shape = group.shape(name);
     const std::string kind = group.text_attribute(name, "MATLAB_class").value_or("");
     const bool empty = group.number_attribute(name, "MATLAB_empty").value_or(0.0) != 0.0;
+    const auto leave_out = [&](const char* why) { left_out_.emplace(name, why); };
     if (shape.size() != 2 || empty || kind.empty())
-      return;
+      return leave_out(empty          ? "it is empty"
+                       : kind.empty() ? "it has no MATLAB_class"
+                                      : "it has not two dimensions");
     MatlabArray array;
-    array.name = name;
+    array.name = names_.insert(name).second ? name : prefix + name;
     array.rows = shape[1];  // MATLAB's first dimension is the last of HDF5
     array.columns = shape[0];
     if (group.is_reference(name)) {
       if (kind != "cell" || !take_texts(group, name, array))
-        return;
+        return leave_out("its cells are not all texts");
     } else if (kind == "char") {
       take_characters(group.numbers(name), array);
     } else if (group.is_number(name) && !group.number_attribute(name, "MATLAB_object_decode")) {
       for (const double value : group.numbers(name))
         array.cells.push_back(std::isfinite(value) ? fmt::format("{}", value) : "");
     } else {
-      return;
+      return leave_out("its values are neither real numbers nor texts");
     }
     count_ += array.cells.size();
     if (count_ > kMostForeignCells)
@@ -170,6 +189,8 @@ class MatlabReader {
 
   std::string file_;
   std::vector<MatlabArray> arrays_;
+  std::set<std::string> names_;
+  std::map<std::string, std::string> left_out_;
   std::size_t count_ = 0;
 };
 

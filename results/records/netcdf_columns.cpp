@@ -2,25 +2,28 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/system/forked_service.hpp"
 #include "results/archive/hdf5_file.hpp"
 #include "results/files/archive_error.hpp"
+#include "results/files/byte_stream.hpp"
 #include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "results/records/date_words.hpp"
 #include "results/records/matlab_columns.hpp"
 #include "results/records/time_stamps.hpp"
 
@@ -28,30 +31,52 @@ namespace mpm {
 namespace {
 
 constexpr std::array kUsualTimes{"time", "timestamp", "datetime", "date", "t"};
-constexpr double kMillisecondsOfSecond = 1000.0;
+constexpr double kMicrosecond = 1e-6;  // s
+constexpr std::string_view kSince = " since ";
 constexpr double kEarliest = -12212553600.0;                // 1583-01-01 in s since 1970
 constexpr double kLatest = 253402300800.0;                  // 10000-01-01
 constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // of 8 bytes, that it becomes
-constexpr const char* kAllowed = "a netCDF-4 file of records, or a CSV file (docs/own_records.md)";
+constexpr const char* kAllowed =
+    "a netCDF-4 file of records, one of MATLAB 7.3, or a CSV file (docs/own_records.md)";
 
 /// Seconds in a unit of CF; none of another one. Months and years have no fixed length.
 std::optional<double> seconds_in(std::string unit) {
-  if (unit.size() > 1 && unit.back() == 's')
+  unit = in_lower_case(std::move(unit));
+  if (unit.size() > 2 && unit.back() == 's')
     unit.pop_back();
   for (const auto& [names, seconds] :
-       {std::pair{" msec millisecond ms ", 1e-3}, std::pair{" sec second s ", 1.0},
+       {std::pair{" nsec nanosecond ns ", 1e-9}, std::pair{" usec microsecond us ", kMicrosecond},
+        std::pair{" msec millisecond ms ", 1e-3}, std::pair{" sec second s ", 1.0},
         std::pair{" min minute ", 60.0}, std::pair{" hr hour h ", 3600.0}, std::pair{" day d ", 86400.0}})
     if (std::string(names).find(fmt::format(" {} ", unit)) != std::string::npos)
       return seconds;
   return std::nullopt;
 }
 
-/// The stamp of a time in s since 1970, to the millisecond.
-std::string utc_text(double seconds) {
-  const double milliseconds = std::round(seconds * kMillisecondsOfSecond);
-  const double whole = std::floor(milliseconds / kMillisecondsOfSecond);
-  const auto rest = static_cast<int>(milliseconds - whole * kMillisecondsOfSecond);
-  return fmt::format("{}{}Z", date_text(whole), rest == 0 ? "" : fmt::format(".{:03}", rest));
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+/// A date in which each number has two digits at least, as people write 1900-1-1 0:0:0 here.
+std::string with_two_digits(const std::string& date) {
+  const auto is_digit = [&date](std::size_t at) {
+    return at < date.size() && std::isdigit(static_cast<unsigned char>(date[at])) != 0;
+  };
+  std::string padded;
+  for (std::size_t at = 0; at < date.size(); ++at) {
+    const bool alone = is_digit(at) && !is_digit(at + 1) && at > 0 && !is_digit(at - 1);
+    padded += alone && date[at - 1] != '.' ? std::string{'0', date[at]} : std::string{date[at]};
+  }
+  return padded;
+}
+
+/// The stamp of a time in s since 1970, with so many digits behind the point.
+std::string utc_text(double seconds, int digits) {
+  const double parts = digits == 3 ? 1e3 : 1e6;  // of a second
+  const double rounded = std::round(seconds * parts), whole = std::floor(rounded / parts);
+  const auto rest = static_cast<int>(rounded - whole * parts);
+  return fmt::format("{}{}Z", date_text(whole), rest == 0 ? "" : fmt::format(".{:0{}}", rest, digits));
 }
 
 class NetcdfReader {
@@ -71,9 +96,11 @@ class NetcdfReader {
       if (variable != time_)
         add_variable(variable);
     if (columns_.names.size() < 2)
-      throw InputError(columns_.file, several_loops_ ? "several loops" : "no variables along the time",
-                       several_loops_ ? "a file of one loop: take it out first (ncks -d loop,0)"
-                                      : "numbers of one dimension, or of two with the time last");
+      throw InputError(
+          columns_.file,
+          several_loops_ ? "several loops" : "no variables along the time" + left_out_text(columns_),
+          several_loops_ ? "a file of one loop: take it out first (ncks -d loop,0)"
+                         : "numbers of one dimension, or of two with the time last");
     return std::move(columns_);
   }
 
@@ -93,7 +120,10 @@ class NetcdfReader {
     const std::string along = time_.empty() && has("sample") ? "sample" : time_;
     if (along.empty() || root_.dimensions(along).size() != 1)
       throw InputError(
-          columns_.file, "no variable of the time",
+          columns_.file,
+          along.empty()
+              ? std::string("no variable of the time")
+              : fmt::format("'{}' of {} dimensions for the time", along, root_.dimensions(along).size()),
           fmt::format("one of one dimension (data.time), such as {}", fmt::join(kUsualTimes, ", ")));
     dimension_ = root_.dimensions(along).front();
     samples_ = root_.shape(along).front();
@@ -108,8 +138,10 @@ class NetcdfReader {
       return root_.texts(time_);
     const std::vector<std::string> numbers = number_cells(time_);
     const std::string units = root_.text_attribute(time_, "units").value_or("");
-    const std::size_t since = units.find(" since ");
-    return since == std::string::npos ? numbers : dates(units.substr(0, since), units.substr(since + 7));
+    const std::size_t since = in_lower_case(units).find(kSince);
+    return since == std::string::npos
+               ? numbers
+               : dates(trimmed(units.substr(0, since)), trimmed(units.substr(since + kSince.size())));
   }
 
   /// The date that times are counted from, in s since 1970: of the calendar that clocks have.
@@ -123,12 +155,12 @@ class NetcdfReader {
           place, fmt::format("'{}'", cut_utf8(date, kShownBytes)),
           fmt::format("a date such as 2024-10-27 00:00:00, with a year of four digits from {} on",
                       kFirstYear));
-    const std::vector<std::string> cell{date};
+    const std::vector<std::string> cell{with_two_digits(date)};
     const std::vector<std::size_t> line{0};
-    const TimeStamps begin = parse_time_stamps({place, cell, line}, {.order = DateOrder::year_month_day});
-    if (!begin.calendar)
+    if (!is_date(cell.front()))
       throw InputError(place, fmt::format("'{}'", cut_utf8(date, kShownBytes)),
                        "a date, such as 2024-10-27 00:00:00");
+    const TimeStamps begin = parse_time_stamps({place, cell, line}, {.order = DateOrder::year_month_day});
     return begin.times.front();
   }
 
@@ -139,20 +171,21 @@ class NetcdfReader {
     if (!seconds)
       throw InputError(place,
                        fmt::format("'{} since {}'", cut_utf8(unit, kShownBytes), cut_utf8(date, kShownBytes)),
-                       "milliseconds to days since a date");
-    const std::string calendar = root_.text_attribute(time_, "calendar").value_or("standard");
+                       "nanoseconds to days since a date");
+    const std::string calendar = in_lower_case(root_.text_attribute(time_, "calendar").value_or("standard"));
     if (calendar != "standard" && calendar != "gregorian" && calendar != "proleptic_gregorian")
       throw InputError(fmt::format("{}: calendar of '{}'", columns_.file, time_),
                        fmt::format("'{}'", cut_utf8(calendar, kShownBytes)),
                        "standard, gregorian or proleptic_gregorian");
     const double begin = beginning(place, date);
+    const int digits = *seconds <= kMicrosecond ? 6 : 3;
     std::vector<std::string> stamps;
     for (const double time : root_.numbers(time_)) {
       const double at = begin + time * *seconds;
       if (std::isfinite(time) && !(at > kEarliest && at < kLatest))
         throw InputError(place, fmt::format("{:g} {} since {}", time, unit, date),
                          "times of the years 1583 to 9999");
-      stamps.push_back(std::isfinite(time) ? utc_text(at) : "");
+      stamps.push_back(std::isfinite(time) ? utc_text(at, digits) : "");
     }
     return stamps;
   }
@@ -166,8 +199,10 @@ class NetcdfReader {
     if (!std::isfinite(scale) || scale == 0.0 || !std::isfinite(offset))
       throw InputError(fmt::format("{}: scale_factor and add_offset of '{}'", columns_.file, variable),
                        fmt::format("{} and {}", scale, offset), "finite numbers, scale_factor not 0");
+    const std::vector<double> values = root_.numbers(variable);
     std::vector<std::string> cells;
-    for (const double value : root_.numbers(variable))
+    cells.reserve(values.size());
+    for (const double value : values)
       cells.push_back(!std::isfinite(value) || value == fill || value == missing
                           ? ""
                           : fmt::format("{}", scale * value + offset));
@@ -205,11 +240,10 @@ class NetcdfReader {
       add_characters(variable, shape.back());
       return;
     }
-    if (dimensions.empty() || dimensions.back() != dimension_ || dimensions.size() > 3 ||
-        variable == dimension_ || !(root_.is_number(variable) || root_.is_text(variable)))
+    if (variable == dimension_)
       return;
-    if (dimensions.size() == 3 && shape.front() != 1) {
-      several_loops_ = true;
+    if (const char* const why = why_no_column(variable, dimensions, shape)) {
+      columns_.left_out.emplace(variable, why);
       return;
     }
     std::vector<std::string> cells = root_.is_text(variable) ? root_.texts(variable) : number_cells(variable);
@@ -225,11 +259,26 @@ class NetcdfReader {
     }
   }
 
+  /// Null of one that gives columns.
+  const char* why_no_column(const std::string& variable, const std::vector<std::string>& dimensions,
+                            const std::vector<std::size_t>& shape) {
+    if (dimensions.empty() || dimensions.back() != dimension_)
+      return "its last dimension is not that of the time";
+    if (!root_.is_number(variable) && !root_.is_text(variable))
+      return "its values are neither real numbers nor texts";
+    several_loops_ = several_loops_ || (dimensions.size() == 3 && shape.front() != 1);
+    return dimensions.size() > 3 || (dimensions.size() == 3 && shape.front() != 1)
+               ? "it has more dimensions than those of one loop"
+               : nullptr;
+  }
+
   /// A text a sample, of single characters along the last dimension.
   void add_characters(const std::string& variable, std::size_t length) {
     const std::vector<std::string> characters = root_.texts(variable);
-    if (std::any_of(characters.begin(), characters.end(), [](const auto& each) { return each.size() > 1; }))
+    if (std::any_of(characters.begin(), characters.end(), [](const auto& each) { return each.size() > 1; })) {
+      columns_.left_out.emplace(variable, "its texts have two dimensions");
       return;
+    }
     std::vector<std::string> cells(samples_);
     for (std::size_t i = 0; i < characters.size(); ++i)
       cells[i / length] += characters[i].empty() ? " " : characters[i];
@@ -249,57 +298,87 @@ class NetcdfReader {
   bool several_loops_ = false;
 };
 
-/// What is in the file, or why it is refused.
-nlohmann::json read_file(std::vector<std::byte>& content, const std::string& file, const std::string& time) {
+/// What is in a file, or why it is refused.
+struct NetcdfAnswer {
+  std::string refused;
+  RecordColumns columns;
+};
+
+NetcdfAnswer read_file(std::vector<std::byte>& content, const std::string& file, const std::string& time) {
   try {
     const auto* const text = reinterpret_cast<const char*>(content.data());
     const bool matlab = is_matlab({text, content.size()});
     const Hdf5File opened = Hdf5File::open_unsealed(std::move(content), file);
-    const RecordColumns read = matlab ? matlab_columns(opened.root(), file, time)
-                                      : NetcdfReader(opened.root(), file, time).columns();
-    return {{"names", read.names}, {"columns", read.columns}, {"lines", read.lines}};
+    return {{},
+            matlab ? matlab_columns(opened.root(), file, time)
+                   : NetcdfReader(opened.root(), file, time).columns()};
   } catch (const InputError& error) {
-    return {{"refused", error.what()}};
+    return {error.what(), {}};
   } catch (const ArchiveError& error) {
     const std::string_view what = error.what(), place = file;
     const bool named = what.starts_with(place) && what.substr(place.size()).starts_with(": ");
-    return {{"refused",
-             InputError(file, std::string(named ? what.substr(place.size() + 2) : what), kAllowed).what()}};
+    return {InputError(file, std::string(named ? what.substr(place.size() + 2) : what), kAllowed).what(), {}};
   }
 }
 
 /// Bytes as a forked service answers them: their number, and as many numbers as hold them.
-std::vector<double> as_numbers(const std::vector<std::uint8_t>& bytes) {
+std::vector<double> as_numbers(const std::string& bytes) {
   std::vector<double> numbers(1 + (bytes.size() + sizeof(double) - 1) / sizeof(double));
   numbers.front() = static_cast<double>(bytes.size());
   std::memcpy(numbers.data() + 1, bytes.data(), bytes.size());
   return numbers;
 }
 
-std::vector<std::uint8_t> as_bytes(const std::vector<double>& numbers) {
+std::string_view as_bytes(const std::vector<double>& numbers) {
   const double room = static_cast<double>(numbers.size()) * sizeof(double);
   if (numbers.empty() || !(numbers.front() >= 0.0 && numbers.front() + sizeof(double) <= room))
     throw ForeignFailure("its process gave an answer that is none");
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(numbers.front()));
-  std::memcpy(bytes.data(), numbers.data() + 1, bytes.size());
-  return bytes;
+  return {reinterpret_cast<const char*>(numbers.data() + 1), static_cast<std::size_t>(numbers.front())};
+}
+
+/// Both ways, beside the name of the file.
+template <class Stream, class Columns>
+void transfer_columns(Stream& stream, Columns& columns) {
+  std::size_t count = columns.names.size(), rows = columns.rows();
+  transfer_all(stream, count, rows);
+  if constexpr (!std::is_const_v<Columns>) {
+    if (rows > kMostForeignCells || count > kMostForeignCells / std::max<std::size_t>(rows, 1))
+      throw std::runtime_error("message between processes: too many columns");
+    columns.names.resize(count);
+    columns.lines.resize(rows);
+    columns.columns.assign(count, std::vector<std::string>(rows));
+  }
+  std::size_t out = columns.left_out.size();
+  transfer(stream, out);
+  if constexpr (std::is_const_v<Columns>) {
+    for (const auto& [name, why] : columns.left_out)
+      transfer_all(stream, name, why);
+  } else {
+    for (std::string name, why; out > 0; --out) {
+      transfer_all(stream, name, why);
+      columns.left_out.emplace(name, why);
+    }
+  }
+  for (auto& name : columns.names)
+    transfer(stream, name);
+  for (auto& line : columns.lines)
+    transfer(stream, line);
+  for (auto& cells : columns.columns)
+    for (auto& cell : cells)
+      transfer(stream, cell);
 }
 
 /// What the process has read, which a file that HDF5 stumbles over may have spoilt.
-RecordColumns columns_of(const nlohmann::json& answer, const std::string& file) {
-  if (answer.contains("refused"))
-    throw InputError(answer["refused"].get<std::string>());
-  RecordColumns columns;
-  columns.file = file;
-  answer.at("names").get_to(columns.names);
-  answer.at("columns").get_to(columns.columns);
-  answer.at("lines").get_to(columns.lines);
-  const bool whole = columns.names.size() == columns.columns.size() &&
-                     std::all_of(columns.columns.begin(), columns.columns.end(),
-                                 [&](const auto& cells) { return cells.size() == columns.rows(); });
-  if (!whole)
-    throw ForeignFailure("its process gave columns of several lengths");
-  return columns;
+RecordColumns columns_of(std::string_view bytes, const std::string& file) {
+  ByteReader reader(bytes);
+  NetcdfAnswer answer;
+  transfer(reader, answer.refused);
+  if (!answer.refused.empty())
+    throw InputError(answer.refused);
+  answer.columns.file = file;
+  transfer_columns(reader, answer.columns);
+  reader.require_end();
+  return std::move(answer.columns);
 }
 
 }  // namespace
@@ -314,13 +393,20 @@ RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& 
                              double time_limit) {
   // The library frees and reads what is not its own when a file is damaged in the right place.
   ForkedService reader(
-      [&](const auto&) { return as_numbers(nlohmann::json::to_cbor(read_file(content, file, time))); },
+      [&](const auto&) {
+        const NetcdfAnswer answer = read_file(content, file, time);
+        ByteWriter writer;
+        transfer(writer, answer.refused);
+        transfer_columns(writer, answer.columns);
+        return as_numbers(writer.take());
+      },
       time_limit, kMostNumbers);
   try {
-    return columns_of(nlohmann::json::from_cbor(as_bytes(reader.ask({}))), file);
+    const std::vector<double> answer = reader.ask({});
+    return columns_of(as_bytes(answer), file);
   } catch (const ForeignFailure& failure) {
     throw InputError(file, fmt::format("a file that HDF5 cannot read ({})", failure.what()), kAllowed);
-  } catch (const nlohmann::json::exception&) {
+  } catch (const std::runtime_error&) {  // of its bytes
     throw InputError(file, "a file that HDF5 cannot read (its process gave an answer that is none)",
                      kAllowed);
   }

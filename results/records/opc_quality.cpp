@@ -1,18 +1,21 @@
 #include "results/records/opc_quality.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
+#include "results/files/utf8.hpp"
+
 namespace mpm {
 namespace {
 
-constexpr double kLeastSeverity = 1073741824.0;  // 2^30
-constexpr double kCodes = 4294967296.0;          // 2^32
+constexpr std::uint32_t kLeastSeverity = 1U << 30U;
+constexpr std::uint32_t kDaCodes = 1U << 16U, kDaQuality = 0xC0;
+constexpr double kCodes = 4294967296.0;  // 2^32
 
 /// The number in a cell, which may be hexadecimal.
 std::optional<double> code_in(const RecordColumns& file, const std::string& cell) {
@@ -24,11 +27,16 @@ std::optional<double> code_in(const RecordColumns& file, const std::string& cell
   return error == std::errc() && last == end ? std::optional<double>(code) : std::nullopt;
 }
 
-bool begins_with_good(const std::string& cell) {
-  constexpr std::string_view kGood = "good";
-  return cell.size() >= kGood.size() &&
-         std::equal(kGood.begin(), kGood.end(), cell.begin(),
-                    [](char a, unsigned char b) { return a == std::tolower(b); });
+/// The code as 32 bits; none for what is none.
+std::optional<std::uint32_t> bits_in(const RecordColumns& file, const std::string& cell) {
+  const std::optional<double> code = code_in(file, cell);
+  if (!code || *code != std::floor(*code) || *code < -kCodes / 2 || *code >= kCodes)
+    return std::nullopt;
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(*code));
+}
+
+bool begins_with(const std::string& cell, std::string_view word) {
+  return in_lower_case(cell.substr(0, word.size())) == word;
 }
 
 }  // namespace
@@ -43,15 +51,24 @@ OpcCodes opc_codes(const RecordColumns& file, std::size_t column) {
 }
 
 bool is_good_opc(const RecordColumns& file, const std::string& cell, OpcCodes codes) {
-  constexpr std::uint32_t kQuality = 0xC0;
-  if (begins_with_good(cell))
+  if (begins_with(cell, "good"))
     return true;
-  const std::optional<double> code = code_in(file, cell);
-  if (!code || *code != std::floor(*code) || *code < -kCodes / 2 || *code >= kCodes)
+  const std::optional<std::uint32_t> bits = bits_in(file, cell);
+  return bits && (codes == OpcCodes::ua ? *bits < kLeastSeverity
+                                        : *bits < kDaCodes && (*bits & kDaQuality) == kDaQuality);
+}
+
+bool is_opc_quality(const RecordColumns& file, const std::string& cell, OpcCodes codes) {
+  if (!code_in(file, cell))
+    return true;
+  const std::optional<std::uint32_t> bits = bits_in(file, cell);
+  if (!bits)
     return false;
-  const auto bits = static_cast<std::uint32_t>(static_cast<std::int64_t>(*code));
-  return codes == OpcCodes::ua ? *code >= 0.0 && *code < kLeastSeverity
-                               : *code < 65536.0 && (bits & kQuality) == kQuality;
+  if (codes == OpcCodes::ua)
+    return *bits == 0 || *bits >= kLeastSeverity;
+  constexpr std::array<std::uint32_t, 15> kOfDa{0, 4, 8, 12, 16, 20, 24, 28, 64, 68, 80, 84, 88, 192, 216};
+  constexpr std::uint32_t kWithoutLimits = 0xFC;
+  return *bits < kDaCodes && std::find(kOfDa.begin(), kOfDa.end(), *bits & kWithoutLimits) != kOfDa.end();
 }
 
 }  // namespace mpm

@@ -19,4 +19,7 @@ OpcCodes opc_codes(const RecordColumns& file, std::size_t column);
 /// Is the quality in this cell good: a word that begins with good, or a number (also 0x...) whose code is?
 bool is_good_opc(const RecordColumns& file, const std::string& cell, OpcCodes codes);
 
+/// Can this be a quality, good or not: a word, or a code whose bits OPC defines?
+bool is_opc_quality(const RecordColumns& file, const std::string& cell, OpcCodes codes);
+
 }  // namespace mpm

@@ -1,7 +1,6 @@
 #include "results/records/record_columns.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -20,11 +19,6 @@ namespace mpm {
 namespace {
 
 constexpr std::size_t kColumnsShown = 20;
-
-bool differ_in_capitals_only(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
 
 std::string columns_text(const std::vector<std::string>& names) {
   std::vector<std::string> shown;
@@ -99,7 +93,7 @@ std::optional<std::size_t> RecordColumns::find(const std::string& name) const {
       found = place;
     }
   for (std::size_t place = 0; place < names.size() && !found; ++place)
-    if (differ_in_capitals_only(names[place], name))
+    if (names[place].size() == name.size() && in_lower_case(names[place]) == in_lower_case(name))
       found = place;
   return found;
 }
@@ -107,6 +101,9 @@ std::optional<std::size_t> RecordColumns::find(const std::string& name) const {
 std::size_t RecordColumns::column(const std::string& place, const std::string& name) const {
   if (const auto found = find(name))
     return *found;
+  if (const auto out = left_out.find(name); out != left_out.end())
+    throw InputError(place, fmt::format("'{}', which is no column: {}", name, out->second),
+                     columns_text(names));
   const std::string nearest = nearest_name(name, names);
   throw InputError(
       place,
@@ -124,6 +121,15 @@ void RecordColumns::keep_rows(const std::vector<std::size_t>& kept) {
   for (auto& cells : columns)
     pick(cells);
   pick(lines);
+}
+
+std::string left_out_text(const RecordColumns& columns) {
+  constexpr std::size_t kMostShown = 3;
+  std::vector<std::string> shown;
+  for (const auto& [name, why] : columns.left_out)
+    if (shown.size() < kMostShown)
+      shown.push_back(fmt::format("'{}' ({})", cut_utf8(name, kShownBytes), why));
+  return shown.empty() ? "" : fmt::format(", but {}", fmt::join(shown, ", "));
 }
 
 void find_number_form(RecordColumns& columns, char decimal) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct RecordColumns {
   std::vector<std::size_t> lines;                 ///< in the file, of each row
   std::vector<std::string> units;                 ///< of the columns, where a row below the heading has them
   std::vector<std::string> warnings;              ///< what was made of the file that needs a look
+  std::map<std::string, std::string> left_out;    ///< what the file has beside columns, and why it is none
 
   std::size_t rows() const { return lines.size(); }
   /// The cell as a number as the file writes them; none when it is not one.
@@ -24,12 +26,15 @@ struct RecordColumns {
   /// The column of this name; of one that differs in capitals only where there is no other. Errors:
   /// InputError for two columns of this name.
   std::optional<std::size_t> find(const std::string& name) const;
-  /// The column of this name, which must be there: `place` is what asks for it. Errors: InputError with the
-  /// nearest column and all there are.
+  /// The column of this name, which must be there: `place` is what asks for it. Errors: InputError with why
+  /// it was left out, or with the nearest column and all there are.
   std::size_t column(const std::string& place, const std::string& name) const;
   /// Keeps these rows, in this order.
   void keep_rows(const std::vector<std::size_t>& kept);
 };
+
+/// Some of what was left out, as ", but 'x' (why), ..."; empty: nothing was.
+std::string left_out_text(const RecordColumns& columns);
 
 /// The decimal sign and the sign between thousands that the cells show; `decimal` where it is known, else
 /// '\0'. It is "," if more cells have one comma than one point, unless thousands prove it (12,345.6 or

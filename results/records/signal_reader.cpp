@@ -1,7 +1,6 @@
 #include "results/records/signal_reader.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -16,18 +15,13 @@
 #include "results/files/utf8.hpp"
 #include "results/records/implausible_values.hpp"
 #include "results/records/opc_quality.hpp"
+#include "results/records/quality_columns.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr std::size_t kWordsShown = 5;  // of a quality
 constexpr const char* kOpc = "opc";     // among the words of a good one
-
-std::string in_lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool is_one_of(const std::string& cell, const std::vector<std::string>& words) {
   return std::any_of(words.begin(), words.end(), [cell = in_lower_case(cell)](const std::string& word) {
@@ -83,6 +77,11 @@ void SignalReader::fill(std::size_t column) {
 }
 
 RowSignal SignalReader::numbers(std::size_t column, const std::string& variable) {
+  return numbers(column, variable, false);
+}
+
+/// Is it `measured`: a CV or an MD itself?
+RowSignal SignalReader::numbers(std::size_t column, const std::string& variable, bool measured) {
   const double zero = said_of(data_.operating_point, variable).value_or(0.0);
   const double scale = said_of(data_.scale, variable).value_or(1.0);
   RowSignal signal(file_.rows(), kNaN);
@@ -106,7 +105,7 @@ RowSignal SignalReader::numbers(std::size_t column, const std::string& variable)
     warnings_.push_back(
         fmt::format("column '{}': {} cells are no numbers and count as missing, the first is '{}' in line {}",
                     name, texts, text, file_.lines[first_text]));
-  drop_implausible(column, variable, signal);
+  drop_implausible(column, variable, measured, signal);
   for (double& value : signal)
     value = scale * (value - zero);
   return signal;
@@ -121,8 +120,12 @@ RowSignal SignalReader::holding(const std::string& name, const char* prefix, Row
 }
 
 RowSignal SignalReader::variable(const std::string& name, const char* prefix) {
-  RowSignal signal = numbers(column_of(name, prefix), name);
-  drop_bad_quality(name, signal);
+  const std::size_t column = column_of(name, prefix);
+  const std::vector<PlantModel::Variable>& mvs = study_.plant.mvs;
+  const bool is_mv =
+      std::any_of(mvs.begin(), mvs.end(), [&](const PlantModel::Variable& mv) { return mv.name == name; });
+  RowSignal signal = numbers(column, name, !is_mv);
+  drop_bad_quality(name, column, signal);
   return signal;
 }
 
@@ -140,12 +143,14 @@ std::pair<double, double> SignalReader::hard_limits(const std::string& variable)
 }
 
 /// Takes out what cannot be measured. The signal is as recorded: it is there that -9999 means something.
-void SignalReader::drop_implausible(std::size_t column, const std::string& variable, RowSignal& signal) {
+void SignalReader::drop_implausible(std::size_t column, const std::string& variable, bool measured,
+                                    RowSignal& signal) {
   const double zero = said_of(data_.operating_point, variable).value_or(0.0);
   const double scale = said_of(data_.scale, variable).value_or(1.0);
   const std::pair<double, double> limits = hard_limits(variable);
   const double one = zero + limits.first / scale, other = zero + limits.second / scale;
-  const std::vector<std::size_t> rows = implausible_rows(signal, std::min(one, other), std::max(one, other));
+  const std::vector<std::size_t> rows =
+      implausible_rows(signal, std::min(one, other), std::max(one, other), measured);
   if (rows.empty())
     return;
   for (const std::size_t row : rows)
@@ -162,40 +167,96 @@ bool SignalReader::has_numbers(std::size_t column) const {
                      [&](const std::string& cell) { return file_.number(cell).has_value(); });
 }
 
-void SignalReader::drop_bad_quality(const std::string& variable, RowSignal& signal) {
-  const auto tag = said_of(data_.quality, variable);
-  if (!tag)
-    return;
-  const std::size_t column = file_.column(where("quality", variable), *tag);
+struct SignalReader::BadRows {
+  std::vector<std::size_t> rows;
+  std::map<std::string, std::size_t> words;  ///< and in how many of the rows
+
+  /// "'Bad' (20 rows), 'Out of range' (1 rows)"
+  std::string text() const {
+    std::vector<std::string> shown;
+    for (const auto& [word, count] : words)
+      shown.push_back(shown.size() < kWordsShown ? fmt::format("'{}' ({} rows)", word, count) : "others");
+    return fmt::format("{}", fmt::join(shown, ", "));
+  }
+};
+
+/// An empty cell of a column that is named is none of the good ones.
+SignalReader::BadRows SignalReader::bad_rows(std::size_t quality, const RowSignal& signal, bool named) const {
   const bool opc = is_one_of(kOpc, data_.good_quality);
-  const OpcCodes codes = opc ? opc_codes(file_, column) : OpcCodes::da;
-  std::size_t bad = 0;
-  std::map<std::string, std::size_t> words;
+  const OpcCodes codes = opc ? opc_codes(file_, quality) : OpcCodes::da;
+  BadRows bad;
   for (std::size_t row = 0; row < signal.size(); ++row) {
-    const std::string& cell = file_.columns[column][row];
-    const bool nothing = cell.empty() && std::isnan(signal[row]);  // the row is of other variables
+    const std::string& cell = file_.columns[quality][row];
+    const bool nothing =
+        cell.empty() && (!named || std::isnan(signal[row]));  // the row is of other variables
     if (nothing || is_word(cell, data_.good_quality) || (opc && is_good_opc(file_, cell, codes)))
       continue;
-    signal[row] = kNaN;
-    ++bad;
-    if (const std::string word = cut_name(cell); words.size() <= kWordsShown || words.contains(word))
-      ++words[word];
+    bad.rows.push_back(row);
+    if (const std::string word = cut_name(cell); bad.words.size() <= kWordsShown || bad.words.contains(word))
+      ++bad.words[word];
   }
-  if (bad == 0)
+  return bad;
+}
+
+void SignalReader::drop_bad_quality(const std::string& variable, std::size_t column, RowSignal& signal) {
+  const auto tag = said_of(data_.quality, variable);
+  if (!tag) {
+    const auto found = quality_column_of(file_, column);
+    if (found && !is_named(*found))
+      look_at_quality(variable, *found, signal);
     return;
-  std::vector<std::string> shown;
-  for (const auto& [word, rows] : words)
-    shown.push_back(shown.size() < kWordsShown ? fmt::format("'{}' ({} rows)", word, rows) : "others");
-  if (bad == signal.size())
-    throw InputError(where("quality", variable),
-                     fmt::format("no row of good quality, but {}", fmt::join(shown, ", ")),
+  }
+  const std::size_t quality = file_.column(where("quality", variable), *tag);
+  const BadRows bad = bad_rows(quality, signal, true);
+  for (const std::size_t row : bad.rows)
+    signal[row] = kNaN;
+  if (!signal.empty() && bad.rows.size() == signal.size())
+    throw InputError(where("quality", variable), fmt::format("no row of good quality, but {}", bad.text()),
                      fmt::format("one of data.good_quality: {}{}", fmt::join(data_.good_quality, ", "),
-                                 words.size() == 1 && is_word(words.begin()->first, {"0"})
+                                 bad.words.size() == 1 && is_word(bad.words.begin()->first, {"0"})
                                      ? "; in OPC UA 0 is good: good_quality = [\"0\"]"
                                      : ""));
-  warnings_.push_back(
-      fmt::format("{} is missing in {} of {} rows, whose quality is none of data.good_quality ({}): {}",
-                  variable, bad, signal.size(), fmt::join(data_.good_quality, ", "), fmt::join(shown, ", ")));
+  if (!bad.rows.empty())
+    warnings_.push_back(fmt::format(
+        "{} is missing in {} of {} rows, whose quality is none of data.good_quality ({}): {}", variable,
+        bad.rows.size(), signal.size(), fmt::join(data_.good_quality, ", "), bad.text()));
+}
+
+/// Of a column that nobody has named.
+void SignalReader::look_at_quality(const std::string& variable, std::size_t quality, RowSignal& signal) {
+  if (on_change(variable))
+    fill(quality);
+  const std::string name = cut_name(file_.names[quality]);
+  const BadRows bad = bad_rows(quality, signal, false);
+  const bool says_nothing = bad.rows.size() == signal.size() && bad.words.size() == 1;
+  if (bad.rows.empty())
+    return;
+  const std::size_t line = file_.lines[bad.rows.front()];
+  if (are_qualities(file_, quality)) {
+    for (const std::size_t row : bad.rows)
+      signal[row] = kNaN;
+    warnings_.push_back(fmt::format(
+        "{} is missing in {} of {} rows, the first in line {}, in which the column '{}' has none of "
+        "data.good_quality ({}): {}. Nothing names this column: data.quality = {{{} = \"{}\"}} does",
+        variable, bad.rows.size(), signal.size(), line, name, fmt::join(data_.good_quality, ", "), bad.text(),
+        variable, name));
+  } else if (bad.words.size() <= kWordsShown && !says_nothing) {
+    warnings_.push_back(fmt::format(
+        "{}: the column '{}' has {}, the first in line {}. If this is its quality, name the column in "
+        "data.quality, and the good words in data.good_quality",
+        variable, name, bad.text(), line));
+  }
+}
+
+/// Has [data] another use for this column?
+bool SignalReader::is_named(std::size_t column) const {
+  const std::string& name = file_.names[column];
+  const auto names = [&](const DataOptions::Names& group) {
+    return std::any_of(group.begin(), group.end(), [&](const auto& each) { return each.second == name; });
+  };
+  return names(data_.tags) || names(data_.setpoint) || names(data_.lower) || names(data_.upper) ||
+         names(data_.y_sim) || names(data_.target) || names(data_.mode) || data_.controller_on == name ||
+         data_.time == name || data_.date == name || is_one_of(name, data_.candidates);
 }
 
 /// Is the cell one of these words, or a number that one of them is?

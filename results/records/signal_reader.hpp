@@ -27,8 +27,9 @@ class SignalReader {
   /// without a number.
   RowSignal numbers(std::size_t column, const std::string& variable);
 
-  /// The same of a variable of the study, without values of bad quality. Errors: also InputError when no row
-  /// is good.
+  /// The same of a variable of the study, without values of bad quality: of the column that data.quality
+  /// names, or of one that is found (quality_column_of()) and can be nothing else (are_qualities()). Errors:
+  /// also InputError when no row of a column that is named is good.
   RowSignal variable(const std::string& name, const char* prefix);
 
   /// The signal of a variable with the value of the row before in each empty cell; a value that is bad or no
@@ -50,11 +51,17 @@ class SignalReader {
   std::string where(const std::string& key, const std::string& variable) const;
 
  private:
+  struct BadRows;
+
   RowSignal is_on(std::size_t column, const std::vector<std::string>& words) const;
   void fill(std::size_t column);
   std::pair<double, double> hard_limits(const std::string& variable) const;
-  void drop_implausible(std::size_t column, const std::string& variable, RowSignal& signal);
-  void drop_bad_quality(const std::string& variable, RowSignal& signal);
+  RowSignal numbers(std::size_t column, const std::string& variable, bool measured);
+  void drop_implausible(std::size_t column, const std::string& variable, bool measured, RowSignal& signal);
+  void drop_bad_quality(const std::string& variable, std::size_t column, RowSignal& signal);
+  void look_at_quality(const std::string& variable, std::size_t quality, RowSignal& signal);
+  BadRows bad_rows(std::size_t quality, const RowSignal& signal, bool named) const;
+  bool is_named(std::size_t column) const;
   bool is_word(const std::string& cell, const std::vector<std::string>& words) const;
 
   const Study& study_;

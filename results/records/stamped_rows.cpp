@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -16,6 +15,8 @@
 #include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "results/records/date_words.hpp"
+#include "results/records/quality_columns.hpp"
 #include "results/records/time_order.hpp"
 #include "results/records/written_date.hpp"
 
@@ -38,9 +39,7 @@ std::string heading_base(std::string name) {
   if (letter != std::string::npos && letter > 0 && letter + 1 < name.size() &&
       (name[letter] == '.' || name[letter] == '_'))
     name.resize(letter);
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name;
+  return in_lower_case(std::move(name));
 }
 
 const std::string* first_cell(const std::vector<std::string>& cells) {
@@ -56,7 +55,7 @@ bool begins_with_date(const std::vector<std::string>& cells) {
 
 bool begins_with_time_of_day(const std::vector<std::string>& cells) {
   const std::string* const cell = first_cell(cells);
-  return cell != nullptr && written_time(*cell).has_value();
+  return cell != nullptr && is_time_of_day(*cell);
 }
 
 /// Values that have their time stamps in common: columns of the file that is made, and where their cells are.
@@ -192,7 +191,7 @@ class RowsReader {
     const bool is_wanted =
         std::find(wanted_.names.begin(), wanted_.names.end(), file_.names[column]) != wanted_.names.end();
     return cell != nullptr && !is_wanted &&
-           (!data_.time_format.empty() || file_.number(*cell) || is_date(*cell) || written_time(*cell));
+           (!data_.time_format.empty() || file_.number(*cell) || is_date(*cell) || is_time_of_day(*cell));
   }
 
   /// The one column of dates, whatever its heading is.
@@ -258,12 +257,16 @@ class RowsReader {
           return std::nullopt;
         found = other;
       }
-    const std::vector<std::string>& cells = file_.columns[column];
-    const bool dates = found && std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
-                         const std::optional<WrittenDate> date =
-                             cell.empty() ? WrittenDate() : written_date(cell);
-                         return date && (!date->time || date->time->seconds == 0.0);
-                       });
+    if (!found)
+      return std::nullopt;
+    const std::optional<std::vector<std::string>> english =
+        dates_in_english(file_.columns[column], data_.language, place_of(column),
+                         [](const std::string& cell) { return written_date(cell).has_value(); });
+    const std::vector<std::string>& cells = english ? *english : file_.columns[column];
+    const bool dates = std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
+      const std::optional<WrittenDate> date = cell.empty() ? WrittenDate() : written_date(cell);
+      return date && (!date->time || date->time->seconds == 0.0);
+    });
     return dates ? found : std::nullopt;
   }
 
@@ -277,6 +280,7 @@ class RowsReader {
   }
 
   void read_wide() {
+    name_repeated_qualities(file_);
     std::optional<std::size_t> column = time_column();
     if (!column) {
       rows_.stamped = false;
@@ -466,6 +470,7 @@ class RowsReader {
     made.separator = file_.separator;
     made.decimal = file_.decimal;
     made.group = file_.group;
+    made.left_out = file_.left_out;
     made.columns.assign(names.size(), std::vector<std::string>(rows));
     made.names = std::move(names);
     made.lines.assign(rows, 0);

@@ -16,6 +16,7 @@
 #include "base/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "results/records/date_words.hpp"
 #include "results/records/written_date.hpp"
 #include "results/records/zone_clock.hpp"
 
@@ -26,12 +27,13 @@ constexpr double kSecondsOfDay = 86400.0;
 constexpr double kEarliestDate = -62167305600.0, kLatestDate = 253402387200.0;  // years 0 to 9999, and a day
 constexpr const char* kForms =
     "numbers, or dates such as 2024-10-27 02:59:30, 2024-10-27T02:59:30Z, 27.10.2024 02:59, 10/27/2024 2:59 "
-    "PM, 27-Oct-24 02:59:30; data.time_unit or data.time_format for others";
+    "PM, 27-Oct-24 02:59:30, with months of any language; data.time_unit or data.time_format for others";
 
 using Dates = std::vector<std::optional<WrittenDate>>;
 
 [[noreturn]] void refuse_stamp(const StampSource& source, std::size_t row, const std::string& allowed) {
-  throw InputError(fmt::format("{}, line {}", source.where, source.lines[row]),
+  const std::size_t line = source.lines[row];  // 0: of no file
+  throw InputError(line == 0 ? source.where : fmt::format("{}, line {}", source.where, line),
                    fmt::format("'{}'", cut_utf8(source.cells[row], kShownBytes)), allowed);
 }
 
@@ -257,34 +259,54 @@ TimeStamps from_dates(const StampSource& source, const Dates& dates, const Stamp
   return stamps;
 }
 
-/// Dates of the form that the study gives.
-TimeStamps in_format(const StampSource& source, const StampRules& rules) {
+/// A date of the form that the study gives.
+struct FormattedDate {
+  double seconds = kNaN;  ///< since 1970, less the offset where there is one
+  bool has_offset = false;
+  std::string letters;  ///< of a zone
+};
+
+/// None for a cell that is not read to its end.
+std::optional<FormattedDate> formatted_date(const std::string& cell, const std::string& format) {
   using LocalTime = date::local_time<std::chrono::microseconds>;
   constexpr double kMicroseconds = 1e6;
   constexpr std::chrono::minutes kNoOffset(10000);
+  std::istringstream in(cell);
+  LocalTime time{};
+  FormattedDate found;
+  std::chrono::minutes offset = kNoOffset;
+  date::from_stream(in, format.c_str(), time, &found.letters, &offset);
+  if (in.fail() || in.peek() != std::istringstream::traits_type::eof())
+    return std::nullopt;
+  found.has_offset = offset != kNoOffset;
+  found.seconds = static_cast<double>(time.time_since_epoch().count()) / kMicroseconds -
+                  (found.has_offset ? 60.0 * static_cast<double>(offset.count()) : 0.0);
+  return found;
+}
+
+TimeStamps in_format(const StampSource& source, const StampRules& rules) {
   TimeStamps stamps{
       .calendar = true, .offsets = true, .unit = "s", .found = {}, .order = rules.order, .times = {}};
   stamps.times.assign(source.cells.size(), kNaN);
-  std::vector<std::string> letters(source.cells.size());
-  std::vector<bool> known(source.cells.size(), false);
-  for (std::size_t row = 0; row < source.cells.size(); ++row) {
-    if (source.cells[row].empty())
+  const auto english = dates_in_english(
+      source.cells, rules.language, source.where,
+      [&rules](const std::string& cell) { return formatted_date(cell, rules.format).has_value(); });
+  const std::vector<std::string>& cells = english ? *english : source.cells;
+  std::vector<FormattedDate> dates(cells.size());
+  for (std::size_t row = 0; row < cells.size(); ++row) {
+    if (cells[row].empty())
       continue;
-    std::istringstream in(source.cells[row]);
-    LocalTime time{};
-    std::chrono::minutes offset = kNoOffset;
-    date::from_stream(in, rules.format.c_str(), time, &letters[row], &offset);
-    if (in.fail() || in.peek() != std::istringstream::traits_type::eof())
+    const std::optional<FormattedDate> date = formatted_date(cells[row], rules.format);
+    if (!date)
       refuse_stamp(source, row, fmt::format("dates of the form '{}' (data.time_format)", rules.format));
-    known[row] = offset != kNoOffset;
-    stamps.offsets = stamps.offsets && (known[row] || !letters[row].empty());
-    stamps.times[row] = static_cast<double>(time.time_since_epoch().count()) / kMicroseconds -
-                        (known[row] ? 60.0 * static_cast<double>(offset.count()) : 0.0);
+    dates[row] = *date;
+    stamps.offsets = stamps.offsets && (date->has_offset || !date->letters.empty());
+    stamps.times[row] = date->seconds;
   }
   LocalTimes local(source, rules.zone);
   for (const std::size_t row : rows_in_time(stamps.times))
-    if (!known[row])
-      stamps.times[row] = local.utc(row, stamps.times[row], letters[row]);
+    if (!dates[row].has_offset)
+      stamps.times[row] = local.utc(row, stamps.times[row], dates[row].letters);
   stamps.offsets = stamps.offsets || !rules.zone.empty();
   return stamps;
 }
@@ -302,6 +324,35 @@ std::optional<Dates> compact_dates(const std::vector<std::string>& cells) {
   return dates;
 }
 
+/// Cells one by one: all of them, or those before one that is neither a number nor a date.
+struct ReadCells {
+  std::vector<double> numbers;
+  Dates dates;
+  bool has_numbers = false, has_dates = false;
+  std::optional<std::size_t> refused;
+};
+
+ReadCells read_cells(const StampSource& source, const std::vector<std::string>& cells, char decimal) {
+  ReadCells read{
+      .numbers = std::vector<double>(cells.size(), kNaN), .dates = Dates(cells.size()), .refused = {}};
+  for (std::size_t row = 0; row < cells.size(); ++row) {
+    if (cells[row].empty())
+      continue;
+    const std::optional<double> number = number_in_stamp(cells[row], decimal);
+    read.numbers[row] = number.value_or(kNaN);
+    read.dates[row] = number ? std::nullopt : written_date(cells[row]);
+    if (!number && !read.dates[row]) {
+      read.refused = row;
+      return read;
+    }
+    read.has_numbers = read.has_numbers || number;
+    read.has_dates = read.has_dates || read.dates[row];
+    if (read.has_numbers && read.has_dates)
+      refuse_stamp(source, row, "stamps of one form: all dates, or all numbers");
+  }
+  return read;
+}
+
 TimeStamps stamps_in(const StampSource& source, const StampRules& rules) {
   if (!rules.format.empty())
     return in_format(source, rules);
@@ -309,24 +360,16 @@ TimeStamps stamps_in(const StampSource& source, const StampRules& rules) {
     if (const std::optional<Dates> compact = compact_dates(source.cells);
         compact && std::any_of(compact->begin(), compact->end(), [](const auto& date) { return date; }))
       return from_dates(source, *compact, rules);
-  std::vector<double> numbers(source.cells.size(), kNaN);
-  Dates dates(source.cells.size());
-  bool has_numbers = false, has_dates = false;
-  for (std::size_t row = 0; row < source.cells.size(); ++row) {
-    const std::string& cell = source.cells[row];
-    if (cell.empty())
-      continue;
-    const std::optional<double> number = number_in_stamp(cell, rules.decimal);
-    numbers[row] = number.value_or(kNaN);
-    dates[row] = number ? std::nullopt : written_date(cell);
-    if (!number && !dates[row])
-      refuse_stamp(source, row, kForms);
-    has_numbers = has_numbers || number;
-    has_dates = has_dates || dates[row];
-    if (has_numbers && has_dates)
-      refuse_stamp(source, row, "stamps of one form: all dates, or all numbers");
-  }
-  return has_dates ? from_dates(source, dates, rules) : from_numbers(std::move(numbers), rules);
+  ReadCells read = read_cells(source, source.cells, rules.decimal);
+  if (read.refused || !rules.language.empty())
+    if (const auto english =
+            dates_in_english(source.cells, rules.language, source.where,
+                             [](const auto& cell) { return written_date(cell).has_value(); }))
+      read = read_cells(source, *english, rules.decimal);
+  if (read.refused)
+    refuse_stamp(source, *read.refused, kForms);
+  return read.has_dates ? from_dates(source, read.dates, rules)
+                        : from_numbers(std::move(read.numbers), rules);
 }
 
 }  // namespace
@@ -338,6 +381,7 @@ StampRules stamp_rules(const DataOptions& data, char decimal, double sample_time
           .unit = data.time_unit,
           .format = data.time_format,
           .zone = data.time_zone,
+          .language = data.language,
           .sample_days = sample_time * days_in(time_unit).value_or(0.0),
           .sample = sample_time};
 }

@@ -12,11 +12,12 @@ namespace mpm {
 struct StampRules {
   DateOrder order = DateOrder::automatic;
   char decimal = '.';
-  std::string unit = {};     ///< of numbers; empty: found, else that of the plant
-  std::string format = {};   ///< DataOptions::time_format
-  std::string zone = {};     ///< DataOptions::time_zone
-  double sample_days = 0.0;  ///< sample time, by which days of a spreadsheet are known; 0: they are not
-  double sample = 0.0;       ///< the same in the time unit of the plant
+  std::string unit = {};      ///< of numbers; empty: found, else that of the plant
+  std::string format = {};    ///< DataOptions::time_format
+  std::string zone = {};      ///< DataOptions::time_zone
+  std::string language = {};  ///< DataOptions::language
+  double sample_days = 0.0;   ///< sample time, by which days of a spreadsheet are known; 0: they are not
+  double sample = 0.0;        ///< the same in the time unit of the plant
 };
 
 /// The rules that [data] gives, for a plant whose sample time is `sample_time` of its time unit.
@@ -40,7 +41,8 @@ struct StampSource {
   const std::vector<std::size_t>& lines;  ///< of the cells
 };
 
-/// Dates in any form of written_date() or compact_date(), or as the rules say, or numbers:
+/// Dates in any form of written_date(), in any language (dates_in_english()), or of compact_date(), or as the
+/// rules say, or numbers:
 ///
 /// - of a unit that the rules name. Those of s, ms, us and ns in the years 1990 to 2099 since 1970 are dates,
 ///   and so are days of a spreadsheet (since 1899-12-30) and of MATLAB (datenum);

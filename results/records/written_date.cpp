@@ -144,8 +144,10 @@ bool read_zone(DateScanner& scan, WrittenTime& time, int& hour) {
     }
     if (same_letters(word, "z"))
       time.offset = 0.0;
-    else
+    else if (std::all_of(word.begin(), word.end(), [](char c) { return c >= 'A' && c <= 'Z'; }))
       time.zone = word;
+    else
+      return false;
   }
   if (const char sign = scan.sign("+-"); sign != '\0') {
     time.offset = read_offset(scan, sign);
@@ -219,6 +221,7 @@ std::optional<WrittenDate> with_named_month(DateScanner& scan, std::optional<int
   const std::optional<int> second = scan.number(1, 4);
   if (!month || !second)
     return std::nullopt;
+  scan.sign(".");
   if (first)
     return *first > kMostDays ? resolved_date(*first, *month, *second)
                               : resolved_date(*second, *month, *first);
@@ -230,12 +233,17 @@ std::optional<WrittenDate> with_named_month(DateScanner& scan, std::optional<int
 
 std::optional<WrittenDate> in_numbers(DateScanner& scan, int first) {
   const char separator = scan.sign("-./");
+  const auto blanks_of_points = [&] { return separator == '.' && scan.blanks(); };  // 27. 10. 2024
+  blanks_of_points();
   const std::optional<int> second = scan.number(1, 2);
   if (!second || scan.sign("-./") == '\0')
     return std::nullopt;
+  blanks_of_points();
   const std::optional<int> third = scan.number(1, 4);
   if (!third)
     return std::nullopt;
+  if (separator == '.' && scan.next() == '.')
+    scan.sign(".");
   return WrittenDate{.first = first,
                      .second = *second,
                      .third = *third,
@@ -333,10 +341,6 @@ std::optional<double> days_of(const WrittenDate& date, DateOrder order) {
   if (!of_calendar.ok())
     return std::nullopt;
   return static_cast<double>(std::chrono::sys_days(of_calendar).time_since_epoch().count());
-}
-
-bool is_date(std::string_view cell) {
-  return written_date(cell).has_value();
 }
 
 }  // namespace mpm

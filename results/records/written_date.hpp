@@ -12,7 +12,7 @@ namespace mpm {
 struct WrittenTime {
   double seconds = 0.0;          ///< since midnight; a time of 24:00 belongs to the next day
   std::optional<double> offset;  ///< from UTC, s
-  std::string zone;              ///< letters in place of an offset, such as CET
+  std::string zone;              ///< capitals in place of an offset, such as CET
   bool twelve_hours = false;     ///< AM or PM
 };
 
@@ -29,8 +29,9 @@ struct WrittenDate {
 ///   2024-10-27 02:59:30.5   2024-10-27T02:59:30Z      20241027T025930+01:00   27.10.2024 02:59
 ///   10/27/2024 2:59:30 PM   27-Oct-24 02:59:30 CET    Sun 27 Oct 2024 02:59   Oct 27, 2024 2:59 AM
 ///
-/// Names of months and days are those of English and German, in full or the first three letters. None for
-/// another form, and for a time that no clock shows.
+/// Blanks may follow points between the numbers. Names of months and days are those of English and German, in
+/// full or the first three letters; dates_in_english() has those of other languages. None for another form,
+/// and for a time that no clock shows.
 std::optional<WrittenDate> written_date(std::string_view cell);
 
 /// The time of day in a cell that has no date: 02:59, 2:59:30.5 PM, 02:59:30+01:00. None for another form.
@@ -41,8 +42,5 @@ std::optional<WrittenDate> compact_date(std::string_view cell);
 
 /// Days since 1970; none for a day that there is not. `order` is for a date that is not resolved.
 std::optional<double> days_of(const WrittenDate& date, DateOrder order);
-
-/// Is there a date in this cell?
-bool is_date(std::string_view cell);
 
 }  // namespace mpm

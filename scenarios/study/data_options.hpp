@@ -39,6 +39,7 @@ struct DataOptions {
   std::string time_unit;    ///< of stamps that are numbers; empty: found, else that of the plant
   std::string time_format;  ///< of dates, as strptime() has it; empty: found
   std::string time_zone;    ///< IANA name of the zone whose clock the stamps show; empty: no offset
+  std::string language;     ///< of the words in dates, as CLDR names it; empty: found
   DateOrder date_order = DateOrder::automatic;
   std::vector<int> skip;  ///< lines of the file that are not read, from 1
   TableLayout layout = TableLayout::automatic;

@@ -52,14 +52,6 @@ NumberPair raw_pair(const TomlTable& table, std::string_view key, const std::str
   return {number_in((*list)[0]), number_in((*list)[1])};
 }
 
-bool is_name(const std::string& text) {
-  const auto may_stand_in_name = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  return !text.empty() && text.size() <= kLongestName &&
-         std::all_of(text.begin(), text.end(), may_stand_in_name);
-}
-
 /// The position of the text `node`, which stands under `key`, in `names`.
 std::size_t position_of(const TomlTable& table, std::string_view key, const toml::node& node,
                         const std::vector<std::string>& names) {
@@ -145,6 +137,14 @@ std::string read_text_or(const TomlTable& table, std::string_view key, const std
   if (fallback.empty())
     return table.has(key) ? read_text(table, key) : fallback;
   return read_or(table, key, fallback, [&] { return read_text(table, key); });
+}
+
+bool is_name(const std::string& text) {
+  const auto may_stand_in_name = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !text.empty() && text.size() <= kLongestName &&
+         std::all_of(text.begin(), text.end(), may_stand_in_name);
 }
 
 std::string read_name(const TomlTable& table, std::string_view key) {

@@ -40,7 +40,10 @@ std::string read_text(const TomlTable& table, std::string_view key);
 /// An empty fallback stands for "none" and is not recorded.
 std::string read_text_or(const TomlTable& table, std::string_view key, const std::string& fallback);
 
-/// A text that can be a bare TOML key and part of a file name: 1 to 64 letters, digits, '_' and '-'.
+/// Can the text be a bare TOML key and part of a file name: 1 to 64 letters, digits, '_' and '-'?
+bool is_name(const std::string& text);
+
+/// A text that is_name().
 std::string read_name(const TomlTable& table, std::string_view key);
 
 /// One of `names`; returns its position.

@@ -171,9 +171,9 @@ def main(program, fmu, base):
         temporary = folder / "tmp"
         temporary.mkdir()
 
-        def run(*words, code=0, cwd=folder):
+        def run(*words, code=0, cwd=folder, **environment):
             result = subprocess.run([program, *map(str, words)], capture_output=True, text=True, timeout=600, cwd=cwd,
-                                    env={**os.environ, "TMPDIR": str(temporary)})
+                                    env={**os.environ, "TMPDIR": str(temporary), **environment})
             assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
             assert not list(temporary.iterdir()), "an unpacked FMU is left"
             return result
@@ -228,6 +228,13 @@ def main(program, fmu, base):
             (folder / "bomb.toml").write_text((folder / "study.toml").read_text().replace("tank.fmu", "bomb.fmu"))
             message = run("validate", "bomb.toml", code=2).stderr
             assert said in message and f"entry '{entry}'" in message, message
+
+        # A library that does not say what it is, or is of another version.
+        for variable, word, said in (("VERSION", "", "fmi2GetVersion of its library gives nothing, not '2.0'"),
+                                     ("VERSION", "1.0", "fmi2GetVersion of its library gives '1.0', not '2.0'"),
+                                     ("TYPES", "", "fmi2GetTypesPlatform of its library gives nothing")):
+            message = run("validate", "study.toml", code=2, **{f"MPMBENCH_TANK_{variable}": word}).stderr
+            assert said in message, message
 
         # A plant that fails without a fault is no plant, and wrong names are told at once.
         study = folder / "study.toml"

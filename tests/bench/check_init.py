@@ -8,6 +8,7 @@ import math
 import os
 import pathlib
 import pty
+import random
 import re
 import subprocess
 import sys
@@ -120,13 +121,14 @@ def check_step_model(run, folder):
                                                                   *([2 * row[0], *row[1:]] for row in rows)]))
     study = folder / "dmc.toml"
     said = run("init", study, "--step-response", model, "--mds", "feed").stderr
-    assert "top/reflux: gain 2, dead time 3, 1 lag; off by at most" in said, said
+    assert "top/reflux: gain 2, dead time 3, 1 lag; exact" in said, said
+    assert tomllib.loads(study.read_text())["controller"]["sample_time"] == 2  # that of the coefficients
     found = {f"{c['cv']}/{c['input']}": c for c in tomllib.loads(study.read_text())["plant"]["channel"]}
     assert sorted(found) == sorted(channels)
     for name, numbers in channels.items():
         channel = found[name]
         for is_now, was in zip((channel["gain"], channel["time_constant"], channel.get("dead_time", 0)), numbers):
-            assert abs(is_now - was) < 2e-3, (name, channel)
+            assert is_now == was, (name, channel)
     # The same coefficients in the study itself, which rounding leaves 1e-5 of, give the same plant but for that.
     steps = {name: f"step = {[row[1 + i] for row in rows]}\nstep_interval = 2\n" for i, name in enumerate(channels)}
     head, *tables = re.sub(r"(?m)^#.*\n", "", study.read_text()).split("[[plant.channel]]")
@@ -150,10 +152,58 @@ def check_step_model(run, folder):
                              ("time,y/u\n1,1\n2,2\n4,3\n", "model.csv:4: time: found 4"),
                              ("time,b\n1,2\n", "the column 'b'; allowed: CV/INPUT, or time"),
                              ("y/u,y/v\n1,2\n", "--step-interval: found nothing; allowed: the time between"),
-                             ("time,y/u\n1,x\n", "model.csv:2: y/u: found 'x'")):
+                             ("time,y/u\n1,x\n", "model.csv:2: y/u: found 'x'"),
+                             ("time,y/u,y/v,y / u\n1,1,1,1\n", "y / u: found the columns 2 and 4 for this channel; allowed: one"),
+                             ("time,/u\n1,1\n", "the column '/u'; allowed: CV/INPUT, or time"),
+                             ("time," + ",".join(f"y{k}/u" for k in range(201)) + "\n1" + ",1" * 201 + "\n",
+                              "found 201 CVs and 1 inputs; allowed: at most 200 of each"),
+                             ("time,y/u\n1," + "z" * 5000 + "\n", "y/u: found 'zzz")):
         model.write_text(content)
         said = run("init", folder / "other.toml", "--step-response", model, code=2).stderr
-        assert message in said, said
+        assert message in said and len(said) < 500, said
+    check_given_numbers(run, folder)
+
+
+def check_given_numbers(run, folder):
+    """What coefficients were made of comes back as it was given, whatever their digits; and is called exact only then."""
+    model, stream = folder / "given.csv", random.Random(7)
+    lag = lambda k, gain, tau, dead: gain * (1 - math.exp(-max(k - dead, 0) / tau))
+    second = lambda k, gain, fast, slow, dead: gain * (1 - (slow * math.exp(-max(k - dead, 0) / slow)
+                                                            - fast * math.exp(-max(k - dead, 0) / fast)) / (slow - fast))
+    for form in "{!r}", "{:.17g}", "{:.9f}", "{:.6g}", "{:.8e}":
+        for gain, tau, dead in ((-1.2, 18.0, 2.0), (0.0125, 7.3, 0.0), (310.0, 11.5, 4.25)):
+            model.write_text("time,y/u\n" + "".join(f"{k},{form.format(lag(k, gain, tau, dead))}\n" for k in range(1, 241)))
+            study = folder / "given.toml"
+            said = run("init", study, "--step-response", model).stderr
+            channel, = tomllib.loads(study.read_text())["plant"]["channel"]
+            assert (channel["gain"], channel["time_constant"], channel.get("dead_time", 0)) == (gain, tau, dead), (form, channel)
+            assert said.endswith("; exact\n"), (form, said)
+            study.unlink()
+    rows = [(k, second(k, 2.5, 4.0, 10.0, 3.0), lag(k, 1.0, 6.0, 1.0) + stream.gauss(0, 2e-4)) for k in range(1, 201)]
+    model.write_text("time,y/u,y/v\n" + "".join(f"{k},{a!r},{b!r}\n" for k, a, b in rows))
+    said = run("init", folder / "given.toml", "--step-response", model).stderr
+    of_lags, noisy = tomllib.loads((folder / "given.toml").read_text())["plant"]["channel"]
+    assert of_lags["numerator"] == [2.5] and of_lags["denominator"] == [40.0, 14.0, 1.0], of_lags
+    assert said.count("; exact\n") == 1 and "y/v: gain 1, dead time 1, 1 lag; off by at most 0.0" in said, said
+    assert "gain" not in noisy or noisy["gain"] != 1.0, noisy
+
+    # The interval is the sample time unless an option or slower rows say another.
+    rows = "\n".join(f"2024-03-01 {k // 60:02}:{k % 60:02},{math.sin(k)},{math.cos(k)}" for k in range(0, 600, 3))
+    for name, heading in ("stamped", "time,y,u"), ("bare", "y,u"):
+        lines = rows.split("\n") if name == "stamped" else [line.partition(",")[2] for line in rows.split("\n")]
+        (folder / f"{name}.csv").write_text("\n".join([heading, *lines]) + "\n")
+    model.write_text("time,y/u\n" + "".join(f"{2 * k},{lag(2 * k, 1.0, 20.0, 4.0)!r}\n" for k in range(1, 101)))
+    for options, sample_time in (([], 2), (["--data", folder / "bare.csv"], 2), (["--data", folder / "stamped.csv"], 3),
+                                 (["--data", folder / "stamped.csv", "--sample-time", 4], 4)):
+        written = run("init", "-", "--step-response", model, *options).stdout
+        assert tomllib.loads(written)["controller"]["sample_time"] == sample_time, options
+        assert ("one row of the file" in written) == (sample_time == 3), options
+    # Nothing is said to come from a file that has no column of a variable.
+    (folder / "others.csv").write_text("time,a,b\n" + "".join(f"{k},{math.sin(k)},1\n" for k in range(100)))
+    written = run("init", "-", "--data", folder / "others.csv", "--cvs", "purity", "--mvs", "reflux", "--gains", 1,
+                  "--time-constants", 10).stdout
+    assert "the noise" not in written.partition("[data]")[0].rpartition("[methods]")[2], written
+    assert written.count("# To do: no column is called like") == 2
 
 
 def check_levels(run, folder):

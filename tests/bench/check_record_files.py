@@ -113,7 +113,7 @@ def check_foreign(files, refused):
     refused(replaced("q", lambda v: numpy.stack([v, v])), "variable 'q'", f"{count}, as 'time'")
     for name in ("scale_factor", "add_offset", "_FillValue", "missing_value"):
         refused(replaced("xD", lambda v: v, **{name: "0.1"}), f"attribute '/xD/{name}'", "no number")
-    refused(replaced("xD", lambda v: v, scale_factor=[1.0, 2.0]), "attribute '/xD/scale_factor'", "several values")
+    refused(replaced("xD", lambda v: v, scale_factor=[1.0, 2.0]), "attribute '/xD/scale_factor'", "found 2 values")
     for value in (0.0, float("nan"), float("inf")):
         refused(replaced("xD", lambda v: v, scale_factor=value), "scale_factor and add_offset of 'xD'", "finite")
     refused(lambda f: f["time"].attrs.update({"units": 3}), "attribute '/time/units'", "no text")
@@ -145,7 +145,7 @@ def check_foreign(files, refused):
         del file["xD"]
         file.create_dataset("xD", (1 << 40, count), "f8", chunks=(1, count)).dims[1].attach_scale(file["time"])
     for change in (external, linked, virtual):
-        refused(change, "variable '/xD'", "its values lie in another file")
+        refused(change, "variable '/xD'", "values that lie in another file")
     refused(huge, "'/xD'", "too many values")
 
 

@@ -2,7 +2,7 @@
 
 Rooms are named from left to right; a file includes only its own room and rooms to its left, by the path from
 the root of the repository. The folders of a room are ordered in the same way, where it has any: a file in the
-room itself may include all of them. Files in tests/ may include everything. The headers of Ceres, Ipopt
+room itself may include all of them. Files in tests/ may include everything. The headers of Ceres, ICU, Ipopt
 and libsvm stand in one .cpp each at most, and never in a header; those of HDF5 and SUNDIALS in the files of their wrapper only, whose
 headers that have them belong to the wrapper. A source includes its own header first, so that compiling the source
 shows that the header needs nothing before it.
@@ -16,6 +16,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
 
 CONFINED = {
     "Ceres": re.compile(r"^ceres/"),
+    "ICU": re.compile(r"^unicode/"),
     "Ipopt": re.compile(r"^(coin/|Ip[A-Z]\w*\.h)"),
     "libsvm": re.compile(r"^libsvm/"),
     "HDF5": re.compile(r"^(hdf5(_hl)?\.h$|H5\w*\.h)"),

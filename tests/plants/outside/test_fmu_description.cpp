@@ -59,7 +59,7 @@ TEST_CASE("what is no FMU is refused", "[fmu]") {
   CHECK_THROWS_WITH(parse("<a"), Contains("m.fmu: modelDescription.xml: found") && Contains("allowed: XML"));
   CHECK_THROWS_WITH(parse("<a/>"), Contains("found no element fmiModelDescription"));
   CHECK_THROWS_WITH(parse(description("1.0", kCoSimulation)),
-                    "m.fmu: fmiVersion: found '1.0'; allowed: '2.0' or '3.0'");
+                    "m.fmu: modelDescription.xml: fmiVersion: found '1.0'; allowed: '2.0' or '3.0'");
   CHECK_THROWS_WITH(parse(description("3.0", kCoSimulation)),
                     Contains("instantiationToken of fmiModelDescription: found nothing"));
   CHECK(parse(description("2.0", "<ModelExchange modelIdentifier='m'/>")).kind == FmuKind::model_exchange);

@@ -51,6 +51,14 @@ TEST_CASE("names and cells of others have bounds", "[csv]") {
   CHECK_THROWS_WITH(rows_in(longest + "n,b\n1,2\n"),
                     Catch::StartsWith("f:1: found a column with a name of 1001 bytes, 'nnn") &&
                         Catch::EndsWith("allowed: at most 1000"));
+  // Ten million fields are counted or refused at once: no field looks at those behind it.
+  const std::string commas(10'000'000, ',');
+  CHECK_THROWS_WITH(rows_in(commas + "\n"), "f:1: found a heading of 10000001 columns; allowed: at most " +
+                                                std::to_string(kMostForeignColumns) +
+                                                ": leave out the others");
+  CHECK_THROWS_WITH(rows_in("a,b\n1,2\n" + commas + "x\n"), Catch::StartsWith("f:3: found 10000001 fields"));
+  const std::string most(kMostForeignColumns - 1, ',');
+  CHECK(rows_in(most + "\n" + most + "\n").size() == 1);
   CHECK(rows_in("a,b\n1,2\n3,4\n", {.separator = ",", .most_cells = 4}).size() == 2);
   CHECK_THROWS_WITH(rows_in("a,b\n1,2\n3,4\n", {.separator = ",", .most_cells = 3}),
                     Catch::StartsWith("f:3: found more than 3 cells"));

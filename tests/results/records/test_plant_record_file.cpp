@@ -9,6 +9,7 @@
 #include "analysis/study_files/study_file.hpp"
 #include "base/error.hpp"
 #include "results/records/csv_columns.hpp"
+#include "results/records/date_words.hpp"
 #include "results/records/plant_record_file.hpp"
 #include "results/records/time_stamps.hpp"
 #include "results/records/written_date.hpp"
@@ -195,6 +196,49 @@ TEST_CASE("qualities that are not good are named, and numbers are known in any f
   CHECK(warns(record,
               "level is missing in 2 of 10 rows, whose quality is none of data.good_quality (good, "
               "opc): '24.0' (1 rows), 'Bad' (1 rows)"));
+}
+
+TEST_CASE("a quality that nothing names is used where it can be nothing else, and told otherwise",
+          "[records]") {
+  const auto read = [](const std::string& heading, const std::vector<std::string>& words,
+                       const std::string& data = "") {
+    std::string text = "time,level,heat,hot,cold,drain," + heading + "\n";
+    for (int k = 0; k < 20; ++k)
+      text += fmt::format("{},{},{},9,1,7,{}\n", k, k, k + 1, k < 18 ? words[0] : words[1]);
+    return read_plant_record(study_with(data), text, "r.csv");
+  };
+  const auto missing = [](const PlantRecord& record) { return record.y.row(0).array().isNaN().count(); };
+  const PlantRecord bad = read("level.Status", {"Good", "Bad"});
+  CHECK(missing(bad) == 2);
+  CHECK(warns(bad,
+              "level is missing in 2 of 20 rows, the first in line 20, in which the column "
+              "'level.Status' has none of data.good_quality (good, opc): 'Bad' (2 rows). Nothing names this "
+              "column: data.quality = {level = \"level.Status\"} does"));
+  CHECK(missing(read("Quality", {"192", "24"})) == 2);
+  const PlantRecord other = read("level.Status", {"OK", "FAULT"});
+  CHECK(missing(other) == 0);
+  CHECK(warns(other,
+              "level: the column 'level.Status' has 'FAULT' (2 rows), 'OK' (18 rows), the first in line 2. "
+              "If this is its quality, name the column in data.quality"));
+  CHECK(missing(read("level.Status", {"OK", "FAULT"}, "good_quality = ['ok']")) == 0);
+  CHECK(missing(read("level.Status", {"Good", "Uncertain"}, "good_quality = ['good', 'uncertain']")) == 0);
+  for (const PlantRecord& quiet :
+       {read("level.Status", {"Good", "Good"}), read("level.Status", {"OK", "OK"}),
+        read("Status", {"RUN", "STOP"}),
+        read("level.Q", {"1.5", "2.5"}, "mode = {level = 'level.Q'}\nmode_on = ['1.5', '2.5']"),
+        read("heat2.Status", {"Good", "Bad"})}) {
+    CHECK(missing(quiet) == 0);
+    CHECK_FALSE(warns(quiet, ".Status"));
+    CHECK_FALSE(warns(quiet, "quality"));
+  }
+  std::string text = "tag,time,value,Status\n";
+  for (int k = 0; k < 20; ++k)
+    for (const char* tag : {"level", "heat", "hot", "cold", "drain"})
+      text += fmt::format("{},{},{},{}\n", tag, k, k == 3 && *tag == 'l' ? 1000 : k,
+                          k == 3 && *tag == 'l' ? "Bad" : "Good");
+  const PlantRecord of_long = read_plant_record(study_with(""), text, "r.csv");
+  CHECK(missing(of_long) == 1);
+  CHECK(warns(of_long, "the first in line 17, in which the column 'level.Status'"));
 }
 
 TEST_CASE("what a record lacks is said by name", "[records]") {

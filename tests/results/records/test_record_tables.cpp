@@ -11,7 +11,9 @@
 #include "results/files/utf8.hpp"
 #include "results/records/csv_columns.hpp"
 #include "results/records/data_sketch.hpp"
+#include "results/records/date_words.hpp"
 #include "results/records/opc_quality.hpp"
+#include "results/records/quality_columns.hpp"
 #include "results/records/stamped_rows.hpp"
 #include "results/records/time_stamps.hpp"
 #include "results/records/written_date.hpp"
@@ -51,10 +53,71 @@ TEST_CASE("dates are read with names of months, without signs between them, and 
     INFO(none);
     CHECK_FALSE(is_date(none));
   }
+  for (const char* noon : {"1. 3. 2024 12:00", "2024. 03. 01. 12:00", "1. 3. 2024. 12:00"}) {
+    INFO(noon);
+    CHECK(stamps_of({noon, noon}, {.order = DateOrder::day_month_year}).times ==
+          std::vector<double>{kNoon, kNoon});
+  }
   CHECK_THROWS_WITH(stamps_of({"31-Feb-24"}), Catch::Contains("a day that there is"));
   CHECK_THROWS_WITH(stamps_of({"2024-03-01 12:00 CST"}), Catch::Contains("data.time_zone"));
   CHECK(written_time("2:59:30.5 PM")->seconds == 53970.5);
   CHECK_FALSE(written_time("2024-03-01"));
+}
+
+TEST_CASE("dates are read in any language", "[records]") {
+  for (const char* noon :
+       {"01-mar-24 12:00:00", "1 marzo 2024 12:00", "01-m\xC3\xA4rts-2024 12:00", "1 mars 2024 12:00",
+        "01/mars/2024 12:00:00 p. m.", "1 de mar\xC3\xA7o de 2024 12:00", "ven. 1 mars 2024 12:00",
+        "01-mar\xE7o-2024 12:00", "1 \xD0\xBC\xD0\xB0\xD1\x80\xD1\x82\xD0\xB0 2024 \xD0\xB3., 12:00",
+        "01-\xEC\xE0\xF0-2024 12:00",
+        "1. b\xC5\x99"
+        "ezna 2024 12:00",
+        "1 Mart 2024 Cuma 12:00", "01-3\xE6\x9C\x88-24 12:00",
+        "2024\xE5\xB9\xB4"
+        "3\xE6\x9C\x88"
+        "1\xE6\x97\xA5 12:00",
+        "2024. m\xC3\xA1rc. 1. 12:00", "01-\xCE\x9C\xCE\xB1\xCF\x81-24 12:00:00 \xCE\xBC\xCE\xBC"}) {
+    INFO(noon);
+    CHECK(is_date(noon));
+    CHECK(stamps_of({noon}).times == std::vector<double>{kNoon});
+  }
+  const StampRules day_first{.order = DateOrder::day_month_year};
+  CHECK(stamps_of({"01/03/2024 11:59:00 a. m.", "01/03/2024 12:00:00 p. m."}, day_first).times ==
+        std::vector<double>{kNoon - 60.0, kNoon});
+  CHECK(stamps_of({"2024/3/1 \xE4\xB8\x8B\xE5\x8D\x88 12:00:00"}).times == std::vector<double>{kNoon});
+  CHECK(stamps_of({"\xD9\xA0\xD9\xA1/\xD9\xA0\xD9\xA3/\xD9\xA2\xD9\xA0\xD9\xA2\xD9\xA4 12:00 \xD9\x85"},
+                  day_first)
+            .times == std::vector<double>{kNoon});
+  // One language for all: of "mar", "ago" and "gen" Italian has the last one, and Spanish has not.
+  CHECK(stamps_of({"01-gen-2024", "01-mar-2024", "01-ago-2024"}).times[1] == kNoon - kDay / 2.0);
+  CHECK(is_time_of_day("03:30 p. m."));
+  CHECK_FALSE(is_time_of_day("TAG12"));
+}
+
+TEST_CASE("a word that is another month in another language is refused, with the key", "[records]") {
+  CHECK_THROWS_WITH(stamps_of({"01-lis-2024 12:00", "02-lis-2024 12:00"}),
+                    Catch::StartsWith("t: found '01-lis-2024 12:00', which is 01-") &&
+                        Catch::Contains("Nov-2024 12:00 in cs") && Catch::Contains("Oct-2024 12:00 in hr") &&
+                        Catch::Contains("allowed: data.language = "));
+  const auto in = [](const char* language) {
+    return stamps_of({"01-lis-2024 12:00"}, {.language = language}).times.front();
+  };
+  CHECK(in("hr") == stamps_of({"2024-10-01 12:00"}).times.front());
+  CHECK(in("pl-PL") == stamps_of({"2024-11-01 12:00"}).times.front());
+  CHECK_THROWS_WITH(in("klingon"), Catch::Contains("data.language: found 'klingon'; allowed: a language"));
+  CHECK(stamps_of({"01-lis-2024", "01-pro-2024"}).times.front() ==  // Czech: no other has both
+        stamps_of({"2024-11-01"}).times.front());
+  CHECK(stamps_of({"31-out-24"}).times.front() == stamps_of({"2024-10-31"}).times.front());
+  // Hours are never dropped: "du." is after noon in Hungarian, and a Sunday elsewhere.
+  CHECK(stamps_of({"2024. 03. 01. du. 1:00"}).times.front() == kNoon + 3600.0);
+  CHECK_THROWS_WITH(stamps_of({"2024-03-01 12:00 cet"}), Catch::Contains("found '2024-03-01 12:00 cet'"));
+  CHECK_THROWS_WITH(stamps_of({"01-xyz-2024 12:00"}), Catch::Contains("with months of any language"));
+}
+
+TEST_CASE("the form that the study gives has the words of any language", "[records]") {
+  const StampRules rules{.format = "%d%b%Y:%I:%M %p"};
+  CHECK(stamps_of({"01MARZO2024:12:00 p.m."}, rules).times == std::vector<double>{kNoon});
+  CHECK_THROWS_WITH(stamps_of({"01XYZ2024:12:00 PM"}, rules), Catch::Contains("data.time_format"));
 }
 
 TEST_CASE("numbers are dates where they can be nothing else, or where the study says so", "[records]") {
@@ -198,6 +261,38 @@ TEST_CASE("the codes of OPC are known", "[records]") {
   CHECK(good({"1e300", "-1e300"}) == std::vector<bool>{false, false});
 }
 
+TEST_CASE("the column of a quality is found by its heading and by what it holds", "[records]") {
+  const auto quality_of = [](const std::string& value, const std::vector<std::string>& headings) {
+    RecordColumns file;
+    file.names = {value};
+    file.names.insert(file.names.end(), headings.begin(), headings.end());
+    file.columns.assign(file.names.size(), {"Good", "Bad"});
+    const auto found = quality_column_of(file, 0);
+    return found ? file.names[*found] : "";
+  };
+  for (const char* heading : {"xD.Status", "XD_QUALITY", "xD q", "Status xD", "quality_xD"})
+    CHECK(quality_of("xD", {"xB.Status", heading}) == heading);
+  CHECK(quality_of("xD.PV", {"xD.Status"}) == "xD.Status");
+  CHECK(quality_of("xD.PV", {"xD.PV.Status"}) == "xD.PV.Status");
+  CHECK(quality_of("xD", {"Quality", "xB.Status"}) == "Quality");
+  CHECK(quality_of("xD", {"xD.Quality", "Quality"}) == "xD.Quality");
+  CHECK(quality_of("xD", {"xB.Status", "xD.SP"}).empty());
+  CHECK(quality_of("xD", {"xD.Status", "xD.Quality"}).empty());  // which one?
+
+  const auto are = [](const std::vector<std::string>& cells) {
+    RecordColumns file;
+    file.columns = {cells};
+    return are_qualities(file, 0);
+  };
+  CHECK((are({"Good", "Bad", ""}) && are({"good (local)", "I/O Timeout"}) && are({"192", "0", "28"}) &&
+         are({"0", "0x80320000"})));
+  CHECK_FALSE((are({"Bad", "Bad"}) || are({"0", "1"}) || are({"192", "193.5"}) || are({"192", "200"}) ||
+               are({"Good", "7"}) || are({""}) || are({"AUTO", "MAN"})));
+
+  const StampedRows repeated = rows_of("t,a,Status,b,Status\n1,2,Good,3,Bad\n2,2,Good,3,Good\n");
+  CHECK(repeated.file.names == std::vector<std::string>{"t", "a", "a.Status", "b", "b.Status"});
+}
+
 TEST_CASE("a file gives first guesses of [data], which are called so", "[records]") {
   PlantModel plant;
   plant.time_unit = "min";
@@ -218,6 +313,26 @@ TEST_CASE("a file gives first guesses of [data], which are called so", "[records
     CHECK_THAT(sketch.table, Catch::Contains(part));
   CHECK(sketch.periods == std::map<std::string, std::size_t>{{"feed", 3}});
   CHECK_THAT(sketch.rests.at("flow"), Catch::Contains("upper tenth") && Catch::Contains("negative"));
+}
+
+TEST_CASE("guesses know setpoint, mode and quality beside a tag, and leave bad values out", "[records]") {
+  PlantModel plant;
+  plant.time_unit = "min";
+  plant.cvs = {{"AI101", "1", ""}};
+  plant.mvs = {{"FC11", "1", ""}, {"reflux", "1", ""}};
+  std::string text = "time,AI101.PV,AI101.SP,AI101.Status,FC11.PV,FC11.SP,FC11.MODE,FC11.Q\n";
+  for (int k = 0; k < 50; ++k)
+    text += std::to_string(k) + "," + (k == 7 ? "1000,96,Bad" : std::to_string(96 + k % 2) + ",96,Good") +
+            ",7.5,7,CAS,Good\n";
+  const DataSketch sketch = data_sketch(plant, parse_csv(text, "f"));
+  for (const char* part :
+       {"tags = {AI101 = \"AI101.PV\", FC11 = \"FC11.SP\"}", "setpoint = {AI101 = \"AI101.SP\"}",
+        "mode = {FC11 = \"FC11.MODE\"}", "quality = {AI101 = \"AI101.Status\", FC11 = \"FC11.Q\"}",
+        "no column is called like reflux", "operating_point = {AI101 = 96.4898, FC11 = 7}"})
+    CHECK_THAT(sketch.table, Catch::Contains(part));
+  CHECK(sketch.spread.at("AI101") < 1.0);
+  CHECK(data_sketch(plant, parse_csv("time,FC11.SP\n1,2\n2,3\n", "f")).table.find("\"FC11.SP\"") !=
+        std::string::npos);
 }
 
 }  // namespace
