@@ -108,10 +108,7 @@ class DescriptionReader {
 
   /// A method from outside could ask for itself.
   std::string own_method(const std::string& name) const {
-    std::vector<std::string> own;
-    for (const AssessmentMethodInfo& method : assessment_methods())
-      if (method.origin.empty())
-        own.push_back(method.name);
+    const std::vector<std::string> own = shipped_methods().names();
     if (std::find(own.begin(), own.end(), name) == own.end())
       throw InputError(fmt::format("{}, methods", place_),
                        fmt::format("'{}'", foreign_text(name, kShownOfUnknown)),

@@ -36,6 +36,7 @@
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
+#include "bench/execution/run_options.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/files/outside_files.hpp"
@@ -343,8 +344,11 @@ RecordAssessment assessed(const AssessArguments& options, const Study& study,
 }
 
 ExitCode assess(AssessArguments options, const std::string& command) {
-  const Study study = find_study(options.study);
-  options.methods = known_methods(options.methods, "--methods");
+  Study study = find_study(options.study);
+  const auto methods = std::make_shared<MethodTable>();
+  options.methods = methods->known(options.methods, "--methods");
+  methods->add(model_check_method(0.01 * options.model_error));
+  study.assessment.table = methods;
   const std::filesystem::path calibration = calibration_archive(options);
   require_no_input("--calibration", calibration, {options.study, options.data});
   if (!options.page.empty()) {
@@ -352,7 +356,6 @@ ExitCode assess(AssessArguments options, const std::string& command) {
     require_output_folder(options.page, "page");
   }
   Progress progress(options.quiet);
-  add_assessment_method(model_check_method(0.01 * options.model_error));
   std::shared_ptr<const RecordFrame> frame;
   RecordAssessment assessment = assessed(options, study, frame);
   try {

@@ -113,7 +113,7 @@ ExitCode init_method(const std::filesystem::path& file) {
   if (command.empty())
     throw InputError("FILE", fmt::format("'{}'", file.string()), "NAME.py or NAME.m");
   const std::string name = name_of_file(file);
-  const std::vector<std::string> ours = assessment_method_names();
+  const std::vector<std::string> ours = shipped_methods().names();
   if (std::find(ours.begin(), ours.end(), name) != ours.end())
     throw InputError("FILE", fmt::format("the name of the method {}", name),
                      fmt::format("a name that is not one of {}", fmt::join(ours, ", ")));

@@ -246,8 +246,8 @@ Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodD
   return answer;
 }
 
-void require_name(const std::string& name) {
-  const std::vector<std::string> known = assessment_method_names();
+void require_name(const std::string& name, const MethodTable& methods) {
+  const std::vector<std::string> known = methods.names();
   const auto is_fit = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
   };
@@ -357,7 +357,7 @@ bool has_calibration(const VerdictText& text, const Campaign& campaign, const st
 
 OutsideVerdicts read_verdicts(const std::filesystem::path& path, const std::string& name,
                               const Campaign& campaign) {
-  require_name(name);
+  require_name(name, method_table(campaign.study.assessment));
   const Study& study = campaign.study;
   const VerdictText text = read_verdict_text(path, study.plant);
   const std::vector<BlindLoop> order = blind_order(campaign, has_calibration(text, campaign, path.string()));
