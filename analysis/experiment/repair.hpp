@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "analysis/methods/assessment_record.hpp"
 #include "analysis/methods/ours/channel_fit.hpp"
 #include "analysis/methods/ours/repair_prospects.hpp"
 #include "scenarios/loop/experiment_draw.hpp"

@@ -225,7 +225,7 @@ std::vector<std::string> finding_names(Study study) {
   study.calibration.emplace();
   std::vector<std::string> names;
   for (const Finding& row :
-       study_findings(study, assessment_forms(study, assessment_method_names()), {}).rows)
+       study_findings(study, assessment_forms(study, method_table(study.assessment).names()), {}).rows)
     names.push_back(row.name);
   return names;
 }

@@ -112,7 +112,7 @@ Eigen::Index lag_count(const Study& study) {
 AssessmentForms assessment_forms(const Study& study, const std::vector<std::string>& methods) {
   AssessmentForms forms;
   for (const std::string& name : methods) {
-    const AssessmentMethodInfo& info = assessment_method(name);
+    const AssessmentMethodInfo& info = method_table(study.assessment).method(name);
     MethodDescription description = info;
     if (study.names_scenarios() && info.scenario_numbers)
       for (AssessmentNumberInfo& number : info.scenario_numbers())

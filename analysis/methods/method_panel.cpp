@@ -11,7 +11,7 @@ MethodPanel::MethodPanel(const Study& study, AssessmentContext context,
                          const std::vector<std::string>& methods)
     : study_(study), context_(std::move(context)), forms_(assessment_forms(study, methods)) {
   for (const auto& form : forms_)
-    assessors_.emplace_back(assessment_method(form->method().name), context_);
+    assessors_.emplace_back(method_table(study.assessment).method(form->method().name), context_);
 }
 
 AssessmentRecord MethodPanel::assessed(std::size_t method, const AssessedLoop& loop, const Own* own) {
@@ -21,7 +21,7 @@ AssessmentRecord MethodPanel::assessed(std::size_t method, const AssessedLoop& l
   const AssessmentContext context{
       own->study,         own->basis, context_.factory, context_.benchmark, context_.benchmark_study,
       context_.correction};
-  Assessor assessor(assessment_method(forms_[method]->method().name), context);
+  Assessor assessor(method_table(own->study.assessment).method(forms_[method]->method().name), context);
   return timed(method, assessor, loop);
 }
 

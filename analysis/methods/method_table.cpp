@@ -44,43 +44,35 @@ namespace mpm {
 MPM_EACH_METHOD(MPM_DECLARE)
 #undef MPM_DECLARE
 
-namespace {
-
-std::vector<AssessmentMethodInfo>& method_list() {
 #define MPM_CALL(name) name##_method(),
-  static std::vector<AssessmentMethodInfo> methods{MPM_EACH_METHOD(MPM_CALL)};
+MethodTable::MethodTable() : methods_{MPM_EACH_METHOD(MPM_CALL)} {}
 #undef MPM_CALL
-  return methods;
-}
 
-}  // namespace
-
-const std::vector<AssessmentMethodInfo>& assessment_methods() {
-  return method_list();
-}
-
-void add_assessment_method(AssessmentMethodInfo method) {
-  const std::vector<std::string> names = assessment_method_names();
-  if (std::find(names.begin(), names.end(), method.name) != names.end())
+void MethodTable::add(AssessmentMethodInfo method) {
+  const std::vector<std::string> taken = names();
+  if (std::find(taken.begin(), taken.end(), method.name) != taken.end())
     throw InputError("method", fmt::format("'{}' from outside", method.name),
-                     fmt::format("a name that is not one of {}", fmt::join(names, ", ")));
-  method_list().push_back(std::move(method));
+                     fmt::format("a name that is not one of {}", fmt::join(taken, ", ")));
+  methods_.push_back(std::move(method));
 }
 
-const AssessmentMethodInfo& assessment_method(std::string_view name) {
-  for (const AssessmentMethodInfo& method : assessment_methods())
+std::vector<std::string> MethodTable::names() const {
+  std::vector<std::string> names;
+  for (const AssessmentMethodInfo& method : methods_)
+    names.push_back(method.name);
+  return names;
+}
+
+const AssessmentMethodInfo& MethodTable::method(std::string_view name) const {
+  for (const AssessmentMethodInfo& method : methods_)
     if (method.name == name)
       return method;
-  const std::vector<std::string> known = assessment_method_names();
-  throw InputError("method", with_nearest(name, known), fmt::format("{}", fmt::join(known, ", ")));
+  throw InputError("method", with_nearest(name, names()), fmt::format("{}", fmt::join(names(), ", ")));
 }
 
-std::vector<std::string> study_methods(const Study& study) {
-  return known_methods(study.methods, "methods.names");
-}
-
-std::vector<std::string> known_methods(const std::vector<std::string>& names, const std::string& key) {
-  std::vector<std::string> known = assessment_method_names();
+std::vector<std::string> MethodTable::known(const std::vector<std::string>& names,
+                                            const std::string& key) const {
+  std::vector<std::string> known = this->names();
   const auto refuse = [&](const std::string& found) {
     throw InputError(key, found, fmt::format("each once: {}; or all", fmt::join(known, ", ")));
   };
@@ -97,9 +89,9 @@ std::vector<std::string> known_methods(const std::vector<std::string>& names, co
   return names;
 }
 
-std::vector<MethodOptionTable> method_option_tables() {
+std::vector<MethodOptionTable> MethodTable::option_tables() const {
   std::vector<MethodOptionTable> tables;
-  for (const AssessmentMethodInfo& method : assessment_methods())
+  for (const AssessmentMethodInfo& method : methods_)
     if (method.options) {
       tables.push_back(*method.options);
       tables.back().name = method.name;
@@ -107,11 +99,21 @@ std::vector<MethodOptionTable> method_option_tables() {
   return tables;
 }
 
-std::vector<std::string> assessment_method_names() {
-  std::vector<std::string> names;
-  for (const AssessmentMethodInfo& method : assessment_methods())
-    names.push_back(method.name);
-  return names;
+const MethodTable& shipped_methods() {
+  static const MethodTable table;
+  return table;
+}
+
+const AssessmentMethodInfo& assessment_method(std::string_view name) {
+  return shipped_methods().method(name);
+}
+
+const MethodTable& method_table(const AssessmentOptions& options) {
+  return options.table ? *options.table : shipped_methods();
+}
+
+std::vector<std::string> study_methods(const Study& study) {
+  return method_table(study.assessment).known(study.methods, "methods.names");
 }
 
 }  // namespace mpm

@@ -5,30 +5,42 @@
 #include <vector>
 
 #include "analysis/methods/assessment_method.hpp"
+#include "scenarios/study/study.hpp"
 
 namespace mpm {
 
-/// Every method, the chain of the thesis first, added methods last.
-const std::vector<AssessmentMethodInfo>& assessment_methods();
+/// The methods that a study may name: those of this program, and others that were added, such as programs.
+class MethodTable {
+ public:
+  /// Those of this program, the chain of the thesis first.
+  MethodTable();
 
-/// Adds an outside method, from the command line and before any run. Throws InputError for a name that
-/// exists.
-void add_assessment_method(AssessmentMethodInfo method);
+  /// Adds a method, as the last one. Throws InputError for a name that exists.
+  void add(AssessmentMethodInfo method);
 
-/// The method of this name. Throws InputError, with the known names, when there is none.
+  const std::vector<AssessmentMethodInfo>& methods() const { return methods_; }
+  std::vector<std::string> names() const;
+  /// The method of this name. Throws InputError, with the known names, when there is none.
+  const AssessmentMethodInfo& method(std::string_view name) const;
+  /// These names, "all" spelled out; `key` is for messages. Throws InputError for an unknown method, one that
+  /// is named twice, or none.
+  std::vector<std::string> known(const std::vector<std::string>& names, const std::string& key) const;
+  /// The tables [assessment.NAME] of all methods that have options, in their order.
+  std::vector<MethodOptionTable> option_tables() const;
+
+ private:
+  std::vector<AssessmentMethodInfo> methods_;
+};
+
+/// The methods of this program.
+const MethodTable& shipped_methods();
+/// shipped_methods().method(name).
 const AssessmentMethodInfo& assessment_method(std::string_view name);
 
-/// The names of the methods of a study, "all" spelled out. Throws InputError for an unknown method, one that
-/// is named twice, or none.
+/// The methods that a study with these options may name.
+const MethodTable& method_table(const AssessmentOptions& options);
+
+/// The names of the methods of a study. Errors: as MethodTable::known().
 std::vector<std::string> study_methods(const Study& study);
-
-/// The same for a list of names; `key` is for messages.
-std::vector<std::string> known_methods(const std::vector<std::string>& names, const std::string& key);
-
-/// The names of all methods, in their order.
-std::vector<std::string> assessment_method_names();
-
-/// The tables [assessment.NAME] of all methods that have options, in their order.
-std::vector<MethodOptionTable> method_option_tables();
 
 }  // namespace mpm

@@ -74,15 +74,6 @@ void read_flags(const JsonEntry& description, const char* key, const Flags& flag
     *flags[place].second = true;
 }
 
-/// A method from outside could ask for itself.
-std::vector<std::string> methods_of_this_program() {
-  std::vector<std::string> own;
-  for (const AssessmentMethodInfo& method : assessment_methods())
-    if (method.origin.empty())
-      own.push_back(method.name);
-  return own;
-}
-
 AssessmentNumberInfo number_info(const JsonEntry& entry) {
   entry.require_keys({"name", "scope", "meaning", "unit"});
   AssessmentNumberInfo info{.name = text_or(entry, "name", ""),
@@ -133,7 +124,8 @@ void read_description(const JsonEntry& entry, ProgramDescription& description) {
               {"source", &method.tells_sources},
               {"mismatch", &method.names_mismatches},
               {"candidate", &method.names_candidates}});
-  const std::vector<std::string> own = methods_of_this_program();
+  const std::vector<std::string> own =
+      shipped_methods().names();  // a method from outside could ask for itself
   for (const std::size_t place : words_in(entry, "methods", own))
     description.methods.push_back(own[place]);
   if (const std::optional<JsonEntry> stated = entry.find("stated_false_alarms"))

@@ -19,8 +19,8 @@
 namespace mpm {
 namespace {
 
-bool needs_every_sample(const std::string& method) {
-  return assessment_method(method).requirements.complete_record;
+bool needs_every_sample(const RecordFrame& frame, const std::string& method) {
+  return method_table(frame.as_kept.assessment).method(method).requirements.complete_record;
 }
 
 /// Takes out the samples of the CVs whose past is unknown.
@@ -100,7 +100,7 @@ std::pair<Eigen::Index, Eigen::Index> benchmark_of(const RecordFrame& frame, con
 }  // namespace
 
 const Study& RecordFrame::study_of(const std::string& method) const {
-  return needs_every_sample(method) ? closed : as_kept;
+  return needs_every_sample(*this, method) ? closed : as_kept;
 }
 
 std::vector<bool> unknown_samples(const PlantRecord& record) {
@@ -144,7 +144,7 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
   for (std::size_t m = 0; m < frame_.methods.size(); ++m) {
     const std::string& name = frame_.methods[m];
     const Study& study = frame_.study_of(name);
-    const bool closes = needs_every_sample(name);
+    const bool closes = needs_every_sample(frame_, name);
     const auto seen = [&](const AssessedLoop& loop) {
       return closes ? without_gaps(loop, frame_.unjudged, frame_.fill) : loop;
     };

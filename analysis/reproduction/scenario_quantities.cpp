@@ -54,7 +54,7 @@ std::vector<TableQuantity> all_quantities() {
                                         {"rpn_maximum", QuantityScope::loop}};
   for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
     quantities.push_back({column.name});
-  for (const AssessmentMethodInfo& method : assessment_methods())
+  for (const AssessmentMethodInfo& method : shipped_methods().methods())
     add_method_quantities(method, quantities);
   return quantities;
 }

@@ -233,7 +233,7 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
   for (const std::string& method : methods)
     names.push_back(method);
   text.insert_or_assign("methods", toml::table{{"names", std::move(names)}});
-  return study_of(text, name);
+  return study_of(text, name, study.assessment.table);
 }
 
 Study trial_study(const Study& recorded, const TrialPlan& plan) {
@@ -257,7 +257,7 @@ Study trial_study(const Study& recorded, const TrialPlan& plan) {
   table_in(text, "study")
       .insert_or_assign("title", fmt::format("{}{}{}{}", kTrialTitle, recorded.title,
                                              plan.judged.empty() ? "" : ", ", plan.judged));
-  return study_of(text, recorded.name + ", calibration run");
+  return study_of(text, recorded.name + ", calibration run", recorded.assessment.table);
 }
 
 bool is_trial_study(const Study& study) {

@@ -16,7 +16,7 @@ namespace {
 
 TomlDraft resolved_draft(const Study& study) {
   TomlDraft draft(key_names(study_file_keys("")));
-  Study read = read_study(study.source, study.name, &draft);
+  Study read = read_study(study.source, study.name, study.assessment.table, &draft);
   read.seed = study.seed;
   read.methods = study.methods;
   if (read != study)

@@ -142,7 +142,7 @@ Study changed_study(const Study& study, const std::vector<StudyChange>& changes,
     apply(toml, change, name);
   std::stringstream text;
   text << toml << '\n';
-  return load_study(text, name);
+  return load_study(text, name, study.assessment.table);
 }
 
 void change_studies(ThesisTable& table, const std::vector<StudyChange>& changes) {

@@ -78,9 +78,11 @@ void refuse_unusable_windows(const TomlTable& document, const Study& study) {
 
 }  // namespace
 
-Study read_study(std::string_view text, const std::string& file_name, TomlDraft* draft) {
+Study read_study(std::string_view text, const std::string& file_name,
+                 std::shared_ptr<const MethodTable> methods, TomlDraft* draft) {
   const toml::table toml = parse_toml(text, file_name);
   Study study;
+  study.assessment.table = std::move(methods);
   const OptionKeys keys = study_keys(study, std::filesystem::path(file_name).parent_path());
   const TomlTable document(toml, file_name, key_names(keys), draft);
   read_keys(document, keys);
@@ -107,8 +109,9 @@ const OptionKeys& study_file_keys(std::string_view table) {
   return found->keys;
 }
 
-Study parse_study(std::string_view text, const std::string& file_name) {
-  return read_study(text, file_name, nullptr);
+Study parse_study(std::string_view text, const std::string& file_name,
+                  std::shared_ptr<const MethodTable> methods) {
+  return read_study(text, file_name, std::move(methods), nullptr);
 }
 
 namespace {
@@ -131,8 +134,9 @@ Study load_study(const std::filesystem::path& path) {
   return with_outside_parts(parse_study(read_toml_file(path, kStudyFile), path.string()));
 }
 
-Study load_study(std::istream& stream, const std::string& name) {
-  return with_outside_parts(parse_study(read_toml_stream(stream, name, kStudyFile), name));
+Study load_study(std::istream& stream, const std::string& name, std::shared_ptr<const MethodTable> methods) {
+  return with_outside_parts(
+      parse_study(read_toml_stream(stream, name, kStudyFile), name, std::move(methods)));
 }
 
 }  // namespace mpm

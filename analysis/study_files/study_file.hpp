@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <istream>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -16,7 +17,10 @@ namespace mpm {
 ///
 /// Errors: InputError whose text is "FILE:LINE: KEY: found ...; allowed: ...". LINE is the line of the value,
 /// for a missing key that of its table, and for a text that is no TOML the one where the parser stopped.
-Study parse_study(std::string_view text, const std::string& file_name);
+///
+/// `methods` are those that the study may name and have options of; none: those of this program.
+Study parse_study(std::string_view text, const std::string& file_name,
+                  std::shared_ptr<const MethodTable> methods = {});
 
 /// Reads a study file of the user, whose programs may be started from now on (study_programs.hpp), and the
 /// FMU of its plant if it has one, which parse_study() leaves until a loop is simulated: an archive can be
@@ -25,6 +29,7 @@ Study parse_study(std::string_view text, const std::string& file_name);
 Study load_study(const std::filesystem::path& path);
 
 /// The same from a stream that has this name in messages; paths in the study are from the current folder.
-Study load_study(std::istream& stream, const std::string& name);
+Study load_study(std::istream& stream, const std::string& name,
+                 std::shared_ptr<const MethodTable> methods = {});
 
 }  // namespace mpm

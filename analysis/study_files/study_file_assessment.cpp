@@ -47,7 +47,7 @@ OptionKeys assessment_keys(AssessmentOptions& options) {
           .read([&options](const TomlTable& table, const std::string& key) {
             options.washout = read_number(table, key, NumberRule::positive());
           })};
-  for (const MethodOptionTable& table : method_option_tables())
+  for (const MethodOptionTable& table : method_table(options).option_tables())
     keys.push_back(key::table(
         table.name, [&options, of_method = table.keys] { return of_method(options); }, table.meaning));
   return keys;

@@ -19,7 +19,8 @@ namespace mpm {
 
 /// The whole study file (study_file.cpp); see parse_study(). `draft`, whose keys are those of the top level,
 /// takes the values in force; null: they are not recorded.
-Study read_study(std::string_view text, const std::string& file_name, TomlDraft* draft);
+Study read_study(std::string_view text, const std::string& file_name,
+                 std::shared_ptr<const MethodTable> methods, TomlDraft* draft);
 
 /// The values of resolved_study() with their defaults (resolved_study.cpp).
 std::vector<TomlDraft::Line> resolved_lines(const Study& study);

@@ -68,10 +68,10 @@ void make_changes(toml::table& study, const TomlTable& changes) {
   lay_over(study, *set->as_table());
 }
 
-Study study_of(const toml::table& text, const std::string& name) {
+Study study_of(const toml::table& text, const std::string& name, std::shared_ptr<const MethodTable> methods) {
   std::ostringstream stream;
   stream << text << '\n';
-  return parse_study(stream.str(), name);
+  return parse_study(stream.str(), name, std::move(methods));
 }
 
 Study read_study_variant(const TomlTable& variant, const toml::table& base, const std::string& name) {

@@ -19,7 +19,8 @@ void make_changes(toml::table& study, const TomlTable& changes);
 
 /// The study with this text, which was made of a base study and changes. `name` stands for the file in
 /// messages. Errors: as parse_study().
-Study study_of(const toml::table& text, const std::string& name);
+Study study_of(const toml::table& text, const std::string& name,
+               std::shared_ptr<const MethodTable> methods = {});
 
 /// The study that the key `study` of `heading` names: a shipped one, or a file relative to `folder`. Errors:
 /// InputError as find_study(), with the place of the key in front.

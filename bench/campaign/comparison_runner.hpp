@@ -23,7 +23,7 @@ namespace mpm {
 std::vector<CampaignMethod> methods_of(const Study& study, const std::string& command);
 
 struct ComparisonOptions {
-  std::vector<std::string> methods;                  ///< names of assessment_methods(), each once
+  std::vector<std::string> methods;                  ///< names that the study may have, each once
   int jobs = 1;                                      ///< how many loops are assessed at once
   std::optional<PartNumber> part = {};               ///< which part of the loops is assessed; none: all
   std::string archive = {};                          ///< digest of the archive whose loops are assessed

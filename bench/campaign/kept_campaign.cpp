@@ -24,10 +24,11 @@ namespace fs = std::filesystem;
 /// Were the methods of this campaign those of this program, also where they come from outside?
 bool has_same_methods(const Campaign& campaign, const Study& study) {
   return method_names(campaign) == study.methods &&
-         std::all_of(campaign.methods.begin(), campaign.methods.end(), [](const CampaignMethod& method) {
-           const MethodDescription& kept = method.form->method();
-           return kept.fingerprint == assessment_method(kept.name).fingerprint;
-         });
+         std::all_of(
+             campaign.methods.begin(), campaign.methods.end(), [&study](const CampaignMethod& method) {
+               const MethodDescription& kept = method.form->method();
+               return kept.fingerprint == method_table(study.assessment).method(kept.name).fingerprint;
+             });
 }
 
 bool is_of(const Campaign& campaign, const Study& of, const RunOptions& options) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bench/campaign/campaign_hooks.hpp"
+#include "bench/execution/run_options.hpp"
 
 // Campaigns whose archive is kept for the next time, and read as stream_archive() reads it.
 

@@ -43,7 +43,9 @@ std::string MissingPieces::array() const {
 
 /// A run that is finished packs its shards: each of the few large ones is there before the small ones go, so
 /// that another look finds all of it, and that soon.
-PartMerge::PartMerge(const std::vector<std::string>& folders, const ShardStore::Warn& warn) {
+PartMerge::PartMerge(const std::vector<std::string>& folders, std::shared_ptr<const MethodTable> methods,
+                     const ShardStore::Warn& warn)
+    : methods_(std::move(methods)) {
   constexpr int kMostLooks = 50;
   constexpr std::chrono::milliseconds kPause{100};
   for (int look = 1;; ++look) {
@@ -74,6 +76,7 @@ void PartMerge::take_stock(const std::vector<std::string>& folders, const ShardS
 
 void PartMerge::take_part(const fs::path& folder) {
   PartFolder part = read_part(folder);
+  part.study.assessment.table = methods_;
   if (part_count_++ > 0)
     require_same_campaign(part, first_);
   if (part.part.number)

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,8 +31,9 @@ class PartMerge {
   /// it holds is missing; of runs at work, what they have finished by now. Throws InputError for a folder
   /// without parts, and for parts that were not run by this program, or not with the study, seed, methods,
   /// solver, audit share and store of the first one; the number of experiments may differ, the largest one
-  /// counts.
-  PartMerge(const std::vector<std::string>& folders, const ShardStore::Warn& warn);
+  /// counts. `methods` are those that the study may name; none: those of this program.
+  PartMerge(const std::vector<std::string>& folders, std::shared_ptr<const MethodTable> methods,
+            const ShardStore::Warn& warn);
 
   const Study& study() const { return first_.study; }
   std::int64_t experiments() const { return *first_.options.experiments; }
@@ -61,6 +63,7 @@ class PartMerge {
   void take_stock(const std::vector<std::string>& folders, const ShardStore::Warn& warn);
   void take_part(const std::filesystem::path& folder);
 
+  std::shared_ptr<const MethodTable> methods_;
   PartFolder first_;  ///< with the largest number of experiments
   std::size_t part_count_ = 0;
   std::vector<PartFolder> pieces_;

@@ -25,6 +25,7 @@
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
+#include "bench/execution/run_options.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/version.hpp"

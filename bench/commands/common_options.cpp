@@ -97,7 +97,7 @@ void add_solver(CLI::App& app, std::string& solver) {
 
 void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description) {
   app.add_option("--methods", methods,
-                 fmt::format("{}. Available: {}", description, fmt::join(assessment_method_names(), ", ")))
+                 fmt::format("{}. Available: {}", description, fmt::join(shipped_methods().names(), ", ")))
       ->delimiter(',');
 }
 
@@ -107,18 +107,19 @@ void add_method_files(CLI::App& app, std::vector<std::string>& files) {
       "File of methods that are programs, [method.NAME] command = [...]; may be given several times");
 }
 
-std::vector<std::string> take_method_files(const std::vector<std::string>& files) {
+MethodPrograms take_method_files(const std::vector<std::string>& files) {
   std::vector<std::string> names;
+  const auto table = std::make_shared<MethodTable>();
   for (const std::string& file : files)
     for (const MethodProgram& program : load_method_file(file)) {
       trust_program(program.command);
       AssessmentMethodInfo method = program_method(program);
       method.given_options = program.options;
       method.fingerprint = fmt::format("{}, options {}", command_identity(program.command), program.options);
-      add_assessment_method(std::move(method));
+      table->add(std::move(method));
       names.push_back(program.name);
     }
-  return names;
+  return {names, table};
 }
 
 std::vector<std::string> with_programs(const std::vector<std::string>& named,

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@ class Option;
 }  // namespace CLI
 
 namespace mpm {
+
+class MethodTable;
 
 // Arguments and options that several commands have, each declared once.
 
@@ -40,9 +43,13 @@ void add_solver(CLI::App& app, std::string& solver);
 void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description);
 /// Files of methods that are programs (docs/bring_your_own.md).
 void add_method_files(CLI::App& app, std::vector<std::string>& files);
-/// Starts each of them for its description, and adds them to the methods of this program; their names. Throws
-/// InputError.
-std::vector<std::string> take_method_files(const std::vector<std::string>& files);
+/// Methods that are programs, by name, and all methods with them.
+struct MethodPrograms {
+  std::vector<std::string> names;
+  std::shared_ptr<const MethodTable> table;
+};
+/// Starts each of them for its description. Throws InputError.
+MethodPrograms take_method_files(const std::vector<std::string>& files);
 /// The methods that assess when programs were given: those that the user names, or those of the study or
 /// suite, and the programs. Empty, as `named`, without programs.
 std::vector<std::string> with_programs(const std::vector<std::string>& named,

@@ -72,7 +72,7 @@ std::vector<std::string> in_archive_or_known(const Campaign& campaign,
       others.push_back(*method);
   }
   if (!others.empty())
-    known_methods(others, "--methods");
+    method_table(campaign.study.assessment).known(others, "--methods");
   return named;
 }
 
@@ -80,7 +80,7 @@ std::vector<std::string> in_archive_or_known(const Campaign& campaign,
 std::vector<std::string> asked_methods(const Campaign& campaign, const std::vector<std::string>& named) {
   if (!named.empty() && named != std::vector<std::string>{"all"})
     return in_archive_or_known(campaign, named);
-  std::vector<std::string> methods = assessment_method_names();
+  std::vector<std::string> methods = method_table(campaign.study.assessment).names();
   for (const std::string& method : method_names(campaign))
     if (std::find(methods.begin(), methods.end(), method) == methods.end())
       methods.push_back(method);
@@ -317,7 +317,8 @@ void require_output(const CompareArguments& options) {
 /// files beside those of the campaign.
 std::vector<std::string> take_asked(Campaign& campaign, const CompareArguments& options,
                                     const std::string& command_line) {
-  std::vector<std::string> given = take_method_files(options.method_files);
+  auto [given, table] = take_method_files(options.method_files);
+  campaign.study.assessment.table = std::move(table);
   for (std::string& name : take_verdicts(campaign, options.verdicts, command_line))
     given.push_back(std::move(name));
   std::vector<std::string> asked = given.empty() || !options.methods.empty()

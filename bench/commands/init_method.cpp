@@ -149,7 +149,7 @@ ExitCode init_method(const std::filesystem::path& file) {
   const std::string name = name_of_file(file);
   if (!is_method_name(name))
     throw InputError("FILE", fmt::format("'{}'", name), kMethodNameRule);
-  const std::vector<std::string> ours = assessment_method_names();
+  const std::vector<std::string> ours = shipped_methods().names();
   if (std::find(ours.begin(), ours.end(), name) != ours.end())
     throw InputError("FILE", fmt::format("the name of the method {}", name),
                      fmt::format("a name that is not one of {}", fmt::join(ours, ", ")));

@@ -89,10 +89,10 @@ ExitCode merge(const MergeArguments& options, const std::string& command_line) {
     require_no_input("OUTPUT", options.output, options.method_files);
     require_output_archive(options.output, "archive");
   }
-  take_method_files(options.method_files);
+  const auto methods = take_method_files(options.method_files).table;
   Progress progress(options.quiet);
   const PartMerge parts(
-      options.parts.empty() ? std::vector{parts_folder_of(options.output).string()} : options.parts,
+      options.parts.empty() ? std::vector{parts_folder_of(options.output).string()} : options.parts, methods,
       [&progress](const std::string& text) { progress.warn(text); });
   if (!options.missing && !options.overwrite)
     require_replaceable(options.output, parts.study());

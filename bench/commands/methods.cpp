@@ -97,12 +97,12 @@ Section details_of(const AssessmentMethodInfo& method) {
 }
 
 ExitCode describe_methods(const MethodsArguments& arguments) {
-  take_method_files(arguments.method_files);
+  const auto table = take_method_files(arguments.method_files).table;
   Document document;
   if (arguments.method.empty())
-    document.sections.push_back(list_of(assessment_methods()));
+    document.sections.push_back(list_of(table->methods()));
   else
-    document.sections.push_back(details_of(assessment_method(arguments.method)));
+    document.sections.push_back(details_of(table->method(arguments.method)));
   print_result(arguments.json ? document_json(document) : document_text(document));
   return ExitCode::done;
 }

@@ -5,6 +5,7 @@
 
 #include "bench/campaign/campaign_hooks.hpp"
 #include "bench/console/progress.hpp"
+#include "bench/execution/run_options.hpp"
 
 namespace mpm {
 

@@ -31,7 +31,7 @@ struct ReplayArguments {
 /// Without the methods that this program does not have, such as verdicts from outside: nobody can ask them
 /// again.
 Campaign with_known_methods(Campaign campaign) {
-  const std::vector<std::string> known = assessment_method_names();
+  const std::vector<std::string> known = shipped_methods().names();
   std::vector<std::string> kept, left_out;
   for (const std::string& method : method_names(campaign))
     (std::find(known.begin(), known.end(), method) == known.end() ? left_out : kept).push_back(method);

@@ -153,15 +153,15 @@ void warn_of_other_parts(const RunArguments& options, const Study& study, const 
 }
 
 ExitCode run(const RunArguments& options, const std::string& command_line) {
-  const Study study =
-      changed_study(find_study(options.study), parse_study_changes(options.changes), options.study);
+  Study study = changed_study(find_study(options.study), parse_study_changes(options.changes), options.study);
   std::vector<std::string> inputs = options.method_files;
   inputs.push_back(options.study);
   require_no_input("--output", options.output, inputs);
   require_output_archive(options.output, "archive");
   RunOptions run_options = options.run;
-  run_options.methods =
-      with_programs(options.run.methods, study.methods, take_method_files(options.method_files));
+  const MethodPrograms programs = take_method_files(options.method_files);
+  study.assessment.table = programs.table;
+  run_options.methods = with_programs(options.run.methods, study.methods, programs.names);
   std::optional<PartFolder> part;
   if (options.is_part())
     part = part_of(options, study, run_options);

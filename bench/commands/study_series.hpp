@@ -8,6 +8,7 @@
 
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/console/progress.hpp"
+#include "bench/execution/run_options.hpp"
 
 namespace mpm {
 

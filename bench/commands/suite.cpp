@@ -154,20 +154,22 @@ std::vector<const SuiteCell*> cells_of(const Suite& suite, const std::optional<P
 /// and is what this run would make of the cell is kept as it is, so that the same command goes on, and the
 /// scores are those of one go.
 ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
-  const Suite suite = find_suite(options.suite, options.choice);
+  Suite suite = find_suite(options.suite, options.choice);
   Progress progress(options.quiet);
   if (options.only_looks())
     return show_finished_board(options, suite, progress);
   if (options.output.empty())
     options.output = "mpmbench-" + suite.name;
-  const std::vector<std::string> programs = take_method_files(options.method_files);
+  const auto [programs, table] = take_method_files(options.method_files);
+  for (SuiteCell& cell : suite.cells)
+    cell.study.assessment.table = table;
   const std::optional<FinishedBoard> finished = board_to_join(options, suite, progress);
   RunOptions run = options.run;
   run.methods = finished && !programs.empty() && options.run.methods.empty()
                     ? programs
                     : with_programs(options.run.methods, suite.methods, programs);
-  run.methods = known_methods(run.methods.empty() ? suite.methods : run.methods,
-                              run.methods.empty() ? "suite.methods" : "--methods");
+  run.methods = table->known(run.methods.empty() ? suite.methods : run.methods,
+                             run.methods.empty() ? "suite.methods" : "--methods");
   const fs::path folder = options.output;
   const std::optional<PartNumber> part = part_of_option(options.shard);
   const std::vector<const SuiteCell*> cells = cells_of(suite, part);

@@ -62,9 +62,9 @@ std::string summary_of(const SummaryArguments& options, const Campaign& campaign
 }
 
 std::string partial_summary(const SummaryArguments& options, const std::vector<std::string>& folders) {
-  take_method_files(options.method_files);
+  const auto methods = take_method_files(options.method_files).table;
   Progress progress(false);
-  const PartMerge parts(folders, [&progress](const std::string& text) { progress.warn(text); });
+  const PartMerge parts(folders, methods, [&progress](const std::string& text) { progress.warn(text); });
   if (parts.experiments_done() == 0)
     throw std::runtime_error(
         fmt::format("{}: none of {} experiments is done yet", folders.front(), parts.experiments()));

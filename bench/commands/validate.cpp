@@ -10,6 +10,7 @@
 #include "analysis/study_files/study_library.hpp"
 #include "analysis/validation/study_forecast.hpp"
 #include "analysis/validation/study_warnings.hpp"
+#include "bench/campaign/campaign_runner.hpp"
 #include "bench/campaign/study_pilot.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"

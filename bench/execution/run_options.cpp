@@ -33,8 +33,9 @@ StorePolicy store_policy(const std::string& name, const std::string& place) {
 Study study_to_run(Study study, const RunOptions& options) {
   if (options.seed)
     study.seed = *options.seed;
-  study.methods =
-      options.methods.empty() ? study_methods(study) : known_methods(options.methods, "--methods");
+  study.methods = options.methods.empty()
+                      ? study_methods(study)
+                      : method_table(study.assessment).known(options.methods, "--methods");
   check_reported(study);
   return study;
 }

@@ -21,7 +21,7 @@ namespace {
 std::string methods_text(const Study& study) {
   std::vector<std::string> methods;
   for (const std::string& name : study.methods) {
-    const std::string& fingerprint = assessment_method(name).fingerprint;
+    const std::string& fingerprint = method_table(study.assessment).method(name).fingerprint;
     methods.push_back(fingerprint.empty() ? name : fmt::format("{} ({})", name, fingerprint));
   }
   return fmt::format("{}", fmt::join(methods, ", "));

@@ -145,10 +145,9 @@ FmuDescription parse_fmu_description(const std::string& xml, const std::string& 
                      "the description of an FMU");
   const std::string written = root.attribute("fmiVersion").value();
   if (written != fmi2::kVersion && written != fmi3::kVersion)
-    throw InputError(
-        fmt::format("{}: {}: fmiVersion", file, kDescriptionFile),
-        written.empty() ? "nothing" : fmt::format("'{}'", foreign_text(written, kShownOfXml)),
-        fmt::format("'{}' or '{}'", fmi2::kVersion, fmi3::kVersion));
+    throw InputError(fmt::format("{}: {}: fmiVersion", file, kDescriptionFile),
+                     written.empty() ? "nothing" : fmt::format("'{}'", foreign_text(written, kShownOfXml)),
+                     fmt::format("'{}' or '{}'", fmi2::kVersion, fmi3::kVersion));
   const FmiVersion version = written == fmi2::kVersion ? FmiVersion::two : FmiVersion::three;
   pugi::xml_node kind = root.child("CoSimulation");
   const bool integrates = kind;

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "results/archive/campaign.hpp"
 #include "analysis/study_files/study_differences.hpp"
+#include "results/archive/campaign.hpp"
 
 namespace mpm {
 

@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/findings/calibration.hpp"
+#include "analysis/methods/method_file.hpp"
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "base/error.hpp"
@@ -24,7 +25,6 @@
 #include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
-#include "analysis/methods/method_file.hpp"
 
 namespace mpm {
 namespace {
@@ -244,8 +244,8 @@ Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodD
   return answer;
 }
 
-void require_name(const std::string& name) {
-  const std::vector<std::string> known = assessment_method_names();
+void require_name(const std::string& name, const MethodTable& methods) {
+  const std::vector<std::string> known = methods.names();
   if (!is_method_name(name) || std::find(known.begin(), known.end(), name) != known.end())
     throw InputError("--verdicts", fmt::format("the name '{}'", name),
                      fmt::format("NAME=FILE with {}, which no method of this program has", kMethodNameRule));
@@ -350,7 +350,7 @@ bool has_calibration(const VerdictText& text, const Campaign& campaign, const st
 
 OutsideVerdicts read_verdicts(const std::filesystem::path& path, const std::string& name,
                               const Campaign& campaign) {
-  require_name(name);
+  require_name(name, method_table(campaign.study.assessment));
   const Study& study = campaign.study;
   const VerdictText text = read_verdict_text(path, study.plant);
   const std::vector<BlindLoop> order = blind_order(campaign, has_calibration(text, campaign, path.string()));

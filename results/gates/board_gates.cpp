@@ -195,7 +195,7 @@ VerdictFailures failures_of(const FinishedBoard& board, std::size_t method) {
 
 /// Methods that this program does not have.
 void judge_outside_methods(const FinishedBoard& board, double minimum, std::vector<GateResult>& results) {
-  const std::vector<std::string> own = assessment_method_names();
+  const std::vector<std::string> own = shipped_methods().names();
   for (std::size_t method = 0; method < board.methods.size(); ++method)
     if (std::find(own.begin(), own.end(), board.methods[method]) == own.end())
       if (auto answers = judge_answers(board.methods[method], failures_of(board, method), minimum))

@@ -30,7 +30,7 @@ void require_assessed(const TomlTable& table, const std::vector<Finding>& findin
   const toml::value<std::string>* name = table.require("aggregate", "").as_string();
   if (name == nullptr || find_finding(findings, name->get()) != nullptr)
     return;
-  for (const AssessmentMethodInfo& method : assessment_methods())
+  for (const AssessmentMethodInfo& method : shipped_methods().methods())
     if (name->get().starts_with(fmt::format("compare.{}.", method.name)) &&
         std::none_of(findings.begin(), findings.end(),
                      [&](const Finding& f) { return f.method == method.name; }))

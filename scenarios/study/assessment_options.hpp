@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <typeindex>
 #include <vector>
@@ -13,6 +14,7 @@
 
 namespace mpm {
 
+class MethodTable;
 struct OptionKey;
 
 /// The options of the methods, one value a method, found by its type.
@@ -77,6 +79,8 @@ struct AssessmentOptions : MethodOptions {
   double bias = 0.5;  ///< standard deviation of a constant error of a CV, in those of its noise
   double washout =
       0;  ///< time constant for CVs that integrate, time unit of the plant; 0: the prediction horizon
+  /// The methods that the study may name (method_table()); none: those of this program.
+  std::shared_ptr<const MethodTable> table = {};
 
   bool operator==(const AssessmentOptions&) const = default;
 };

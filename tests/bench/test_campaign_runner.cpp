@@ -152,8 +152,8 @@ TEST_CASE("campaign: the methods of the options take the place of the study's, a
   options.methods = {"all"};
   options.jobs = 2;
   const Campaign all = run_campaign(study, options);
-  CHECK(method_names(all) == assessment_method_names());
-  CHECK(all.study.methods == assessment_method_names());
+  CHECK(method_names(all) == shipped_methods().names());
+  CHECK(all.study.methods == shipped_methods().names());
   check_same(all, run_serially(study, options), 6);
   const RecordBytes format(chain.study, forms_of(chain));
   for (std::size_t i = 0; i < 6; ++i) {

@@ -261,7 +261,7 @@ ExperimentRecord record(Numbers& numbers, const Campaign& campaign, ExperimentDr
 }
 
 void add_methods(Campaign& campaign) {
-  campaign.study.methods = assessment_method_names();
+  campaign.study.methods = shipped_methods().names();
   campaign.methods = made_up_methods(campaign.study);
 }
 
@@ -339,7 +339,7 @@ AssessmentRecord plain_verdict(std::shared_ptr<const AssessmentForm> form, bool 
 
 std::vector<CampaignMethod> made_up_methods(const Study& study) {
   std::vector<CampaignMethod> methods;
-  for (auto& form : assessment_forms(study, assessment_method_names()))
+  for (auto& form : assessment_forms(study, shipped_methods().names()))
     methods.push_back({std::move(form), "1.3.0", "def", "mpmbench compare \xC3\xBC.h5"});
   return methods;
 }

@@ -61,7 +61,7 @@ TYPE = re.compile(r"^(?:struct|class|enum class|using) (\w+)\b(?! ?;)", re.MULTI
 FUNCTION = re.compile(r"^(?!using|return|namespace|template)[A-Za-z][\w:<>,&* ]* [&*]?([a-z]\w*)\(", re.MULTILINE)
 CONSTANT = re.compile(r"^(?:inline|extern) const(?:expr)? .*?\b(k[A-Z]\w*)", re.MULTILINE)
 # A name behind a type or a word like `auto` or `struct`: a member, a nested type, a variable, a forward declaration.
-LOCAL = re.compile(r"(?<![\w.>:])(?!return |else |throw |case )(?:[\w:]+|[\w:]+<.*>)[&*]* [&*]*(?=(\w+))")
+LOCAL = re.compile(r"(?<![\w.>:])(?!return |else |throw |case |const )(?:[\w:]+|[\w:]+<.*>)[&*]* [&*]*(?=(\w+))")
 CALL = re.compile(r"(?<![\w.>:~])(?:mpm::)?([a-z]\w*)\(")
 CAPITALISED = re.compile(r"(?<![\w.])([A-Z]\w+|k[A-Z]\w*)\b")
 

@@ -269,6 +269,7 @@ class UsedNames(CheckerTest):
 
     def test_a_type_of_the_project_without_its_header(self):
         self.assert_missing("int f(Row& row);\n", "Row is used without plants/row.hpp")
+        self.assert_missing("int f(const Row& row);\n", "Row is used without plants/row.hpp")
 
     def test_a_function_of_the_project_without_its_header(self):
         self.assert_missing("int f() { return row_count({}); }\n", "row_count is used without plants/row.hpp")

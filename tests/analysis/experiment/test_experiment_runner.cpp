@@ -60,7 +60,7 @@ TEST_CASE("runner: a loop is run once however many methods look at it, and none 
           "[experiment_runner]") {
   const Study study = short_study();
   const BasisCase basis = run_basis_case(study, testing::kFactory);
-  const std::vector<std::string> all = assessment_method_names();
+  const std::vector<std::string> all = shipped_methods().names();
   // With both faults there are three loops.
   const std::int64_t index = first_of(study, ExperimentKind::mpm_ud);
   std::int64_t steps = 0;

@@ -262,7 +262,7 @@ TEST_CASE("rates of a method: a flagged loop with several affected CVs has no on
 
 TEST_CASE("rates of a method: channels are counted for methods that name them, under one mismatch of an MV",
           "[method_rates]") {
-  for (const AssessmentMethodInfo& info : assessment_methods()) {
+  for (const AssessmentMethodInfo& info : shipped_methods().methods()) {
     Case made;
     const auto names = [form = testing::form_of(study(), info.name)](std::vector<Channel> channels) {
       Assessment said;

@@ -128,7 +128,7 @@ TEST_CASE("experiments that are not flagged count for nothing but the regression
 
 TEST_CASE("findings: every row has one name, a share has hits, a number has none") {
   const Study study = study_of_all_kinds();
-  const AssessmentForms forms = assessment_forms(study, assessment_method_names());
+  const AssessmentForms forms = assessment_forms(study, shipped_methods().names());
   std::vector<ExperimentRecord> records;
   for (int i = 0; i < 6; ++i) {
     records.push_back(made_up_record(i, static_cast<ExperimentKind>(1 + i % 3), i, 0.2));

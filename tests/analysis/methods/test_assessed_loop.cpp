@@ -258,7 +258,7 @@ TEST_CASE("a loop that a method refuses has failed, with what it refused, and th
   const AssessedLoop& healthy = *context.benchmark;
   AssessedLoop odd = healthy;
   odd.y(2, 7) = std::numeric_limits<double>::infinity();
-  for (const AssessmentMethodInfo& method : assessment_methods()) {
+  for (const AssessmentMethodInfo& method : shipped_methods().methods()) {
     INFO(method.name);
     Assessor assessor(method, context);
     const Assessment refused = assessor.assess(odd);

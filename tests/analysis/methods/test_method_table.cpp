@@ -26,20 +26,20 @@ const std::string kKnown =
 }  // namespace
 
 TEST_CASE("methods by name: as they are asked for, and all of them by one word") {
-  CHECK(known_methods({"sse", "botelho"}, "x") == Names{"sse", "botelho"});
-  CHECK(known_methods({"all"}, "x") == assessment_method_names());
-  CHECK(assessment_method_names().front() == "botelho");
-  for (const std::string& name : assessment_method_names())
+  CHECK(shipped_methods().known({"sse", "botelho"}, "x") == Names{"sse", "botelho"});
+  CHECK(shipped_methods().known({"all"}, "x") == shipped_methods().names());
+  CHECK(shipped_methods().names().front() == "botelho");
+  for (const std::string& name : shipped_methods().names())
     CHECK(assessment_method(name).name == name);
 }
 
 TEST_CASE("methods by name: no method, an unknown one, and one twice are refused under the name of the key") {
   const std::string allowed = "; allowed: each once: " + kKnown + "; or all";
-  CHECK_THROWS_WITH(known_methods({}, "--methods"), "--methods: found no method" + allowed);
-  CHECK_THROWS_WITH(known_methods({"sse", "nobody"}, "k"), "k: found 'nobody'" + allowed);
-  CHECK_THROWS_WITH(known_methods({"sse", "sun", "sse"}, "k"), "k: found 'sse' twice" + allowed);
-  CHECK_THROWS_WITH(known_methods({"all", "sse"}, "k"), "k: found 'all'" + allowed);
-  CHECK_THROWS_AS(known_methods({}, "k"), InputError);
+  CHECK_THROWS_WITH(shipped_methods().known({}, "--methods"), "--methods: found no method" + allowed);
+  CHECK_THROWS_WITH(shipped_methods().known({"sse", "nobody"}, "k"), "k: found 'nobody'" + allowed);
+  CHECK_THROWS_WITH(shipped_methods().known({"sse", "sun", "sse"}, "k"), "k: found 'sse' twice" + allowed);
+  CHECK_THROWS_WITH(shipped_methods().known({"all", "sse"}, "k"), "k: found 'all'" + allowed);
+  CHECK_THROWS_AS(shipped_methods().known({}, "k"), InputError);
   CHECK_THROWS_WITH(assessment_method("nobody"), "method: found 'nobody'; allowed: " + kKnown);
   CHECK_THROWS_WITH(assessment_method("likelyhood"),
                     "method: found 'likelyhood' (nearest: 'likelihood'); allowed: " + kKnown);
@@ -49,14 +49,14 @@ TEST_CASE("methods of a study: those of its file, the thesis's chain when it nam
   Study study = find_study("chapter6");
   CHECK(study_methods(study) == Names{"botelho"});
   study.methods = {"all"};
-  CHECK(study_methods(study) == assessment_method_names());
+  CHECK(study_methods(study) == shipped_methods().names());
   study.methods.clear();
   CHECK_THROWS_WITH(study_methods(study), Contains("methods.names: found no method"));
 }
 
 TEST_CASE("every method describes itself, and each of its numbers once") {
   std::set<std::string> names;
-  for (const AssessmentMethodInfo& method : assessment_methods()) {
+  for (const AssessmentMethodInfo& method : shipped_methods().methods()) {
     INFO(method.name);
     CHECK(names.insert(method.name).second);
     CHECK_FALSE(method.title.empty());

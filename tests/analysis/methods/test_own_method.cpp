@@ -11,13 +11,11 @@
 #include "analysis/study_files/resolved_study.hpp"
 #include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_file.hpp"
-#include "analysis/study_files/study_file_keys.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/toml/option_keys.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
-// A method of the tests: all that the program knows of it, and of its option, stands in this source. The
-// program has it from then on, so that this test has an executable of its own.
+// A method of the tests: all that the program knows of it, and of its option, stands in this source.
 
 namespace mpm {
 namespace {
@@ -62,11 +60,16 @@ AssessmentMethodInfo peak_method() {
 }  // namespace
 
 TEST_CASE("the options of a method that is one source are keys of study files") {
-  add_assessment_method(peak_method());
-  const Study chapter6 = find_study("chapter6");
-  const auto with = [&chapter6](const std::string& options) {
-    return parse_study(chapter6.source + "\n[assessment.peak]\n" + options, "s.toml");
+  const auto table = std::make_shared<MethodTable>();
+  table->add(peak_method());
+  CHECK_THROWS_WITH(table->add(peak_method()), Catch::Contains("found 'peak' from outside"));
+  const Study shipped = find_study("chapter6");
+  const Study chapter6 = parse_study(shipped.source, shipped.name, table);
+  const auto with = [&](const std::string& options) {
+    return parse_study(chapter6.source + "\n[assessment.peak]\n" + options, "s.toml", table);
   };
+  CHECK_THROWS_WITH(parse_study(shipped.source + "\n[assessment.peak]\n", "s.toml"),
+                    Catch::Contains("unknown key 'peak'"));
 
   const Study study = with("limit = 1e-3");
   CHECK(study.assessment.of<PeakOptions>().limit == 1e-3);
@@ -76,20 +79,21 @@ TEST_CASE("the options of a method that is one source are keys of study files") 
   CHECK_THROWS_WITH(with("limt = 3"), Catch::Contains("assessment.peak: ") &&
                                           Catch::Contains("unknown key 'limt' (nearest: 'limit')"));
   CHECK_THROWS_WITH(with("limit = 0"), Catch::Contains("assessment.peak.limit: found 0; allowed: "));
-  CHECK_THROWS_WITH(parse_study(chapter6.source + "\n[assessment.peek]\n", "s.toml"),
+  CHECK_THROWS_WITH(parse_study(chapter6.source + "\n[assessment.peek]\n", "s.toml", table),
                     Catch::Contains("unknown key 'peek' (nearest: 'peak')"));
 
   CHECK_THAT(resolved_study(chapter6), Catch::Contains("\n[assessment.peak]\nlimit = 2.0\n"));
   const std::vector<std::string> changed = changed_defaults(study);
   CHECK(std::count(changed.begin(), changed.end(), "assessment.peak.limit = 0.001 (default: 2.0)") == 1);
-  CHECK_THAT(manual_table(study_file_keys("assessment.peak")),
+  MethodOptions options;
+  CHECK_THAT(manual_table(table->option_tables().back().keys(options)),
              Catch::Contains("| `limit` | number | 2 | > 0 |"));
 
   const BasisCase basis = run_basis_case(chapter6, testing::kFactory);
   const AssessedLoop loop = assessed_loop(chapter6, basis.point, basis.trajectory);
   const auto flags = [&](const Study& of) {
     const AssessmentContext context = assessment_context(of, basis, testing::kFactory);
-    return Assessor(assessment_method("peak"), context).assess(loop).flagged;
+    return Assessor(method_table(of.assessment).method("peak"), context).assess(loop).flagged;
   };
   CHECK(flags(study));
   CHECK_FALSE(flags(chapter6));

@@ -55,7 +55,7 @@ Study unexcited(const std::string& self_check) {
 
 ExperimentRecord experiment(const Study& study, const BasisCase& basis, std::int64_t index,
                             StorePolicy store) {
-  return ExperimentRunner(study, basis, assessment_method_names(), testing::kFactory).run(index, store);
+  return ExperimentRunner(study, basis, shipped_methods().names(), testing::kFactory).run(index, store);
 }
 
 TEST_CASE("every method sees every family of records, and one that needs every sample says so", "[records]") {
