@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -24,6 +23,7 @@
 #include "results/blind/blind_loops.hpp"
 #include "results/files/csv_text.hpp"
 #include "results/files/foreign_content.hpp"
+#include "results/files/letter_case.hpp"
 #include "results/files/utf8.hpp"
 
 namespace mpm {
@@ -152,9 +152,7 @@ Json flag_json(const VerdictLine& line, const std::string& column) {
   const std::string* const field = line.find(column);
   if (field == nullptr)
     return nullptr;
-  std::string word = *field;
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string word = lower_case(*field);
   const std::optional<double> number = number_in(line, word);
   if (number == 1.0 || std::find(kYes.begin(), kYes.end(), word) != kYes.end())
     return true;
