@@ -24,4 +24,12 @@ double sorted_quantile(const std::vector<double>& sorted, double probability) {
   return sorted[below] + (position - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
+double upper_median(std::vector<double> values) {
+  if (values.empty())
+    throw InputError("number of values of a median", "0", "1 or more");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 }  // namespace mpm

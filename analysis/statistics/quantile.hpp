@@ -10,4 +10,8 @@ namespace mpm {
 /// @throws InputError for no values or p outside [0, 1]
 double sorted_quantile(const std::vector<double>& sorted, double probability);
 
+/// Median of values in any order that is one of them: of an even number the larger of the two in the middle.
+/// @throws InputError for no values
+double upper_median(std::vector<double> values);
+
 }  // namespace mpm

@@ -10,6 +10,7 @@
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "analysis/statistics/quantile.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "plants/analyser.hpp"
@@ -180,12 +181,6 @@ void check_values(const RecordedVariable& variable, std::vector<std::string>& wa
                     variable.name, longest));
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Does a CV stay away from a level for most of the time, by more than it moves meanwhile?
 bool stays_away(const Eigen::RowVectorXd& y, double level) {
   constexpr Eigen::Index kBlocks = 20;
@@ -202,7 +197,7 @@ bool stays_away(const Eigen::RowVectorXd& y, double level) {
     distances.push_back(std::abs(mean - level));
     deviations.push_back(std::sqrt(there.select((part.array() - mean).square(), 0.0).sum() / count));
   }
-  return !distances.empty() && median_of(distances) > kFarAway * median_of(deviations);
+  return !distances.empty() && upper_median(distances) > kFarAway * upper_median(deviations);
 }
 
 void check_setpoints(const Study& study, const PlantRecord& record, std::vector<std::string>& warnings) {

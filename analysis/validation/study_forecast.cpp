@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/statistics/quantile.hpp"
 #include "analysis/statistics/student.hpp"
 
 namespace mpm {
@@ -60,10 +63,7 @@ double median_cost(std::span<const ExperimentRecord> pilot, std::size_t method) 
   for (const ExperimentRecord& record : pilot)
     if (record.status == ExperimentStatus::ok)
       costs.push_back(record.assessments[method].milliseconds);
-  if (costs.empty())
-    return 0.0;
-  std::nth_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2), costs.end());
-  return costs[costs.size() / 2];
+  return costs.empty() ? 0.0 : upper_median(std::move(costs));
 }
 
 std::int64_t loop_bytes(const Study& study) {

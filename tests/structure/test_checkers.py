@@ -313,6 +313,12 @@ class Hygiene(CheckerTest):
     def test_a_header_without_guard(self):
         self.assert_one(check_hygiene, {"plants/a.hpp": "int f();\n"}, "plants/a.hpp:1:", "#pragma once")
 
+    def test_a_script_in_a_source(self):
+        def source(lines):
+            return "\nconst char* const kText = R\"js(\n" + lines * "f();\n" + ")js\";\n"
+        self.assert_one(check_hygiene, {"results/a.cpp": source(40)}, "results/a.cpp:2:", "text of 41 lines: a file for mpm_embed")
+        self.assert_clean(check_hygiene, {"results/a.cpp": source(20), "tests/a.cpp": source(40)})
+
     def test_not_ascii_in_a_source(self):
         self.assert_one(check_hygiene, {"plants/a.cpp": "// \u03c4\n"}, "plants/a.cpp:1:", "not ASCII: '\\u03c4'")
 

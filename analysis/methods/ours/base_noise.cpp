@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "analysis/identification/kalman_whitening.hpp"
+#include "analysis/statistics/quantile.hpp"
 #include "analysis/statistics/sample_spacing.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "base/error.hpp"
@@ -33,12 +34,6 @@ constexpr double kMuchLess = 15.0;         // of log L
 constexpr double kNoWeightOfNoise = -6.0;  // logarithm of a posterior probability
 constexpr double kUnseen = 0.1;            // prior probability of another background than the record shows
 constexpr std::array<Eigen::Index, 4> kNeighbours{-2, -1, 1, 2};
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// All AR(1) states under white noise of a grid.
 NoiseModels grid_of_models(Eigen::Index samples) {
@@ -264,7 +259,7 @@ double deviation_of_steps(const Eigen::Ref<const Eigen::RowVectorXd>& e) {
   for (Eigen::Index k = spacing; k < e.size(); ++k)
     if (!std::isnan(e(k)) && !std::isnan(e(k - spacing)))
       steps.push_back(std::abs(e(k) - e(k - spacing)));
-  return steps.empty() ? 0.0 : kDeviationOfMedian * median(std::move(steps)) / std::sqrt(2.0);
+  return steps.empty() ? 0.0 : kDeviationOfMedian * upper_median(std::move(steps)) / std::sqrt(2.0);
 }
 
 Eigen::RowVectorXd without_outliers(const Eigen::Ref<const Eigen::RowVectorXd>& e) {
@@ -281,12 +276,12 @@ Eigen::RowVectorXd without_outliers(const Eigen::Ref<const Eigen::RowVectorXd>& 
       continue;
     const auto [least, largest] = std::minmax_element(around.begin(), around.end());
     spread(k) = *largest - *least;
-    off(k) = std::abs(e(k) - median(std::move(around)));
+    off(k) = std::abs(e(k) - upper_median(std::move(around)));
     distances.push_back(off(k));
   }
   if (distances.empty())
     return e;
-  const double limit = kOutlier * kDeviationOfMedian * median(std::move(distances));
+  const double limit = kOutlier * kDeviationOfMedian * upper_median(std::move(distances));
   Eigen::RowVectorXd kept = e;
   for (Eigen::Index k = 0; k < e.size(); ++k)
     if (limit > 0.0 && off(k) > limit && off(k) > kSpreads * spread(k))

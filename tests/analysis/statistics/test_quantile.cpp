@@ -16,8 +16,15 @@ TEST_CASE("quantiles between order statistics") {
   CHECK(sorted_quantile({7.0}, 0.3) == 7.0);
 }
 
+TEST_CASE("the upper median is one of the values, in any order") {
+  CHECK(mpm::upper_median({7.0}) == 7.0);
+  CHECK(mpm::upper_median({8.0, 1.0, 2.0}) == 2.0);
+  CHECK(mpm::upper_median({8.0, 1.0, 4.0, 2.0}) == 4.0);  // the other one in the middle is 2
+}
+
 TEST_CASE("quantiles refuse impossible input") {
   CHECK_THROWS_AS(sorted_quantile({}, 0.5), mpm::InputError);
+  CHECK_THROWS_AS(mpm::upper_median({}), mpm::InputError);
   CHECK_THROWS_AS(sorted_quantile({1.0}, -0.1), mpm::InputError);
   CHECK_THROWS_AS(sorted_quantile({1.0}, 1.1), mpm::InputError);
 }
