@@ -89,7 +89,7 @@ std::vector<Finding> gate_findings(const Study& study) {
 }
 
 std::vector<Finding> gate_findings(const Campaign& campaign) {
-  return study_findings(campaign.study, forms_of(campaign), {}).rows;
+  return findings_of(campaign).rows;
 }
 
 GateResult judge_number(const std::string& name, const std::string& meaning, double value, std::int64_t count,
