@@ -143,6 +143,8 @@ MpmIndicator DiagnosisChain::indicator_of(Eigen::Index cv, const Eigen::Ref<cons
 }
 
 FaultSource DiagnosisChain::source_of(const MpmIndicator& indicator) const {
+  if (std::isnan(indicator.i_mpm))
+    return FaultSource::none;
   return indicator.i_mpm > options_.mpm_threshold ? FaultSource::mpm : FaultSource::ud;
 }
 

@@ -50,7 +50,7 @@ struct Diagnosis {
   Eigen::Index predicted_cv = -1;  ///< the CV whose Ivar_diag is farthest from 1
   double location_margin = std::numeric_limits<double>::quiet_NaN();  ///< location_margin() of ivar_diag
   MpmIndicator indicator;                            ///< of the predicted CV, (6.13) to (6.15)
-  FaultSource predicted_source = FaultSource::none;  ///< mpm when I_MPM exceeds its threshold, else ud
+  FaultSource predicted_source = FaultSource::none;  ///< DiagnosisChain::source_of() the indicator
   FaultsAlone alone;                                 ///< of an experiment with both faults
   /// Every CV on its own, for named scenarios; empty for random experiments, which look at one CV.
   std::vector<CvDiagnosis> cvs = {};
@@ -99,7 +99,7 @@ class DiagnosisChain {
   MpmIndicator indicator_of(Eigen::Index cv, const Eigen::Ref<const Eigen::MatrixXd>& y,
                             const NominalOutputs& nominal);
 
-  /// mpm or ud, by the threshold of I_MPM.
+  /// mpm when I_MPM exceeds its threshold, ud when it does not, none when there is no I_MPM.
   FaultSource source_of(const MpmIndicator& indicator) const;
 
  private:

@@ -121,9 +121,14 @@ LoopInteraction loop_interaction(const Study& study, const OperatingPoint& point
   if (mvs.size() != result.cvs.size())
     return result;
   result.mvs = mvs;
+  result.relative_gain_at_maximum = relative_gain_magnitudes(study.plant.G, result, result.rpn_frequency);
+  if (!result.relative_gain_at_maximum.allFinite()) {
+    result.mvs.clear();
+    result.relative_gain_at_maximum.resize(0, 0);
+    return result;
+  }
   for (const double frequency : result.frequency)
     result.relative_gain.push_back(relative_gain_magnitudes(study.plant.G, result, frequency));
-  result.relative_gain_at_maximum = relative_gain_magnitudes(study.plant.G, result, result.rpn_frequency);
   return result;
 }
 

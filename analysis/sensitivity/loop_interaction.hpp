@@ -47,8 +47,9 @@ Eigen::MatrixXcd active_frequency_response(const NominalSensitivity& sensitivity
 /// frequency belongs to a slower direction. The Nyquist frequency counts as a peak when the RPN rises towards
 /// it.
 ///
-/// `mvs` and the relative gains are empty when active CVs and MVs are not equally many: then no square part
-/// of G0 is singled out. The diagonal pairs CVs and MVs in the order of their lists.
+/// `mvs` and the relative gains are empty when active CVs and MVs are not equally many, so that no square
+/// part of G0 is singled out, or when this part has no inverse, as with a CV that no MV moves. The diagonal
+/// pairs CVs and MVs in the order of their lists.
 struct LoopInteraction {
   struct Peak {
     double frequency;

@@ -90,16 +90,6 @@ struct CvOptions {
   AnalyserTiming analyser;
 };
 
-/// A soft limit outside of the hard ones could never be reached.
-void refuse_soft_outside_hard(const TomlTable& table, const NumberPair& soft, const NumberPair& hard) {
-  const auto outside = [&hard](double limit) {
-    return std::isfinite(limit) && (limit < hard.first || limit > hard.second);
-  };
-  if (outside(soft.first) || outside(soft.second))
-    table.refuse("soft", fmt::format("[{}, {}]", soft.first, soft.second),
-                 fmt::format("limits within the hard ones [{}, {}]", hard.first, hard.second));
-}
-
 /// A CV has a setpoint, a soft range, or both.
 void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
   const bool has_setpoint = table.has("setpoint_weight");
@@ -126,7 +116,9 @@ void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
   if (table.has("slack_weight") || cv.slack_cost == 0.0)
     cv.slack_weight = read_number(table, "slack_weight", NumberRule::positive());
   cv.soft = read_limits(table, "soft");
-  refuse_soft_outside_hard(table, cv.soft, cv.hard);
+  if (lies_outside(cv.soft, cv.hard))
+    table.refuse("soft", fmt::format("[{}, {}]", cv.soft.first, cv.soft.second),
+                 fmt::format("limits within the hard ones [{}, {}]", cv.hard.first, cv.hard.second));
 }
 
 OptionKeys keys(CvOptions& cv) {
@@ -346,6 +338,13 @@ OptionKeys controller_keys(Study& study) {
 }
 
 }  // namespace
+
+bool lies_outside(const NumberPair& soft, const NumberPair& hard) {
+  const auto outside = [&hard](double limit) {
+    return std::isfinite(limit) && (limit < hard.first || limit > hard.second);
+  };
+  return outside(soft.first) || outside(soft.second);
+}
 
 OptionKey controller_key(Study& study) {
   return key::table(

@@ -55,6 +55,9 @@ Eigen::Index read_inner_input(const TomlTable& disturbance, const Study& study);
 /// [controller], with the setpoints at the start (study_file_controller.cpp).
 OptionKey controller_key(Study& study);
 
+/// A finite limit of the soft range lies outside of the hard one, where it could never be reached.
+bool lies_outside(const NumberPair& soft, const NumberPair& hard);
+
 /// [simulation] (study_file_simulation.cpp). The steps are in the order of their samples.
 OptionKey simulation_key(Study& study);
 

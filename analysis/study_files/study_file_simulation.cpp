@@ -210,8 +210,8 @@ void take_limit_step(const TomlTable& table, const ListedLimits& step, Study& st
   const Limits &soft = study.controller.cv_soft, &hard = study.controller.cv_hard;
   if (!study.controller.has_soft_limit(cv))
     table.refuse("cv", "a CV without a soft limit", "a CV with one");
-  if (!moves(soft.lower(cv), lower) || !moves(soft.upper(cv), upper) || lower < hard.lower(cv) ||
-      upper > hard.upper(cv))
+  if (!moves(soft.lower(cv), lower) || !moves(soft.upper(cv), upper) ||
+      lies_outside(range, {hard.lower(cv), hard.upper(cv)}))
     table.refuse("soft", fmt::format("[{}, {}]", lower, upper),
                  fmt::format("limits where [{}, {}] has them, within the hard ones [{}, {}]", soft.lower(cv),
                              soft.upper(cv), hard.lower(cv), hard.upper(cv)));

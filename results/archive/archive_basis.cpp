@@ -88,10 +88,14 @@ void write_autocorrelations(Hdf5Group& group, const Study& study, const BasisCas
   for (const auto& [of, signal] : {std::pair{"y", &basis.trajectory.y}, std::pair{"y0", &basis.nominal.y0},
                                    std::pair{"y0_diag", &basis.nominal.y0_diag}}) {
     const Eigen::MatrixXd values = autocorrelations(*signal, study.cv_count(), max_lag);
-    write_matrices(
-        group, {"cv", "lag"},
-        {std::string("acf_") + of, std::string("autocorrelation of ") + of, "1", "", {}, "lag_time"},
-        {&values}, study.cv_count(), max_lag + 1);
+    write_matrices(group, {"cv", "lag"},
+                   {std::string("acf_") + of,
+                    std::string("autocorrelation of ") + of,
+                    "1",
+                    "NaN: the signal is constant, or not known",
+                    {},
+                    "lag_time"},
+                   {&values}, study.cv_count(), max_lag + 1);
   }
 }
 

@@ -74,7 +74,8 @@ void write_spreads(Hdf5Group& group, const std::string& name, const std::string&
         values.push_back(spread.*value);
     const VariableText text{
         "ratio_" + name + suffix,
-        fmt::format("{} of Ivar_diag modified over true, {} of S0 multiplied", word, parameter)};
+        fmt::format("{} of Ivar_diag modified over true, {} of S0 multiplied", word, parameter), "1",
+        "NaN: no experiment has such a ratio"};
     group.write(text.name, {"perturbed_cv", "multiplier"}, values, attributes<double>(text));
   };
   number("_min", "smallest", &RatioSpread::least);

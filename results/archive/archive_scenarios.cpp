@@ -50,7 +50,7 @@ void write_totals(Hdf5Group& group, const std::vector<ExperimentRecord>& records
     values.push_back(total_simulation_error(record.chain()));
   group.write("tsse", {"experiment"}, values,
               attributes<double>({"tsse", "TSSE = sum of SSE over the CVs", "1",
-                                  "units of the CVs added up; NaN unless the status is ok"}));
+                                  "units of the CVs added up; NaN without a verdict of the chain"}));
 }
 
 }  // namespace

@@ -491,7 +491,8 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
                                       : "empty unless the status is failed"},
                          &Record::message),
       vector(
-          {"ivar_basis", "Ivar_basis = var y / var y of the basis case", "1", "NaN unless the status is ok"},
+          {"ivar_basis", "Ivar_basis = var y / var y of the basis case", "1",
+           "NaN unless the status is ok, and where neither varies; infinite where the basis case does not"},
           "cv", study.cv_count(), [](const Record& r) -> const Eigen::VectorXd& { return r.ivar_basis; },
           [](Record& r, Eigen::VectorXd values) {
             if (r.status == ExperimentStatus::ok)

@@ -1,5 +1,7 @@
 #include "results/document/document.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "results/document/words.hpp"
@@ -30,9 +32,17 @@ Number number(const Rate& rate, NumberForm form) {
   return rate.total == 0 ? Number{} : Number{rate.value, form, rate.interval};
 }
 
+std::string interval_words(const Interval& interval, int decimals) {
+  return std::isnan(interval.lower) || std::isnan(interval.upper)
+             ? ""
+             : fmt::format(" ({:.{}f} to {:.{}f})", interval.lower, decimals, interval.upper, decimals);
+}
+
 std::string share_words(const Rate& rate) {
-  return fmt::format("{:.1f} % ({:.1f} to {:.1f})", 100 * rate.value, 100 * rate.interval.lower,
-                     100 * rate.interval.upper);
+  if (rate.total == 0)
+    return "-";
+  return fmt::format("{:.1f} %{}", 100 * rate.value,
+                     interval_words({100 * rate.interval.lower, 100 * rate.interval.upper}, 1));
 }
 
 Number number_of(const Rate& rate, NumberForm form) {

@@ -56,7 +56,9 @@ inline Number fixed(double value, const Interval& interval = {kNaN, kNaN}) {
 inline Number share(double value) {
   return {value, NumberForm::share};
 }
-/// "97.1 % (94.5 to 98.5)": in a sentence.
+/// " (94.5 to 98.5)": in a sentence, behind the number; empty where the interval does not exist.
+std::string interval_words(const Interval& interval, int decimals);
+/// "97.1 % (94.5 to 98.5)": in a sentence; of no loops a dash.
 std::string share_words(const Rate& rate);
 /// A rate without loops is a dash.
 Number number(const Rate& rate, NumberForm form = NumberForm::share);

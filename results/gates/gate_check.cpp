@@ -106,7 +106,7 @@ std::vector<Finding> gate_findings(const Study& study) {
 }
 
 std::vector<Finding> gate_findings(const Campaign& campaign) {
-  return study_findings(campaign.study, forms_of(campaign), {}).rows;
+  return findings_of(campaign).rows;
 }
 
 std::vector<BaselineChanges> correct_questions(std::vector<BaselineChanges> questions) {

@@ -55,8 +55,8 @@ struct GateCheck {
   bool passed() const;
 };
 
-/// The findings that a gate can be put on: those of a run of this study, and of this campaign. Without
-/// values: the names and forms matter.
+/// The findings that a gate can be put on: those that every run of this study has, without values; and those
+/// of this campaign, which has more where some loop gives them a value, such as `unstable`.
 std::vector<Finding> gate_findings(const Study& study);
 std::vector<Finding> gate_findings(const Campaign& campaign);
 

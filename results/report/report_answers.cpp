@@ -133,8 +133,9 @@ std::string rates_answer(const ReportInput& input) {
   const Rate source = input.findings().source_recognised;
   std::string text;
   if (located.total > 0)
-    text = fmt::format("The CV is right in {} of {} loops, the source in {} of {}. ", share_words(located),
-                       located.total, share_words(source), source.total);
+    text = fmt::format(
+        "The CV is right in {} of {} loops{}. ", share_words(located), located.total,
+        source.total == 0 ? "" : fmt::format(", the source in {} of {}", share_words(source), source.total));
   if (compared > 0)
     text += fmt::format("{} of {} numbers agree with what is reported.", agree, compared);
   return text;
@@ -157,8 +158,8 @@ std::string variance_answer(const ReportInput& input) {
       continue;
     least = std::min(least, fit.r_squared.lower);
     largest = std::max(largest, fit.r_squared.upper);
-    text += fmt::format("{}{:.2f} ({:.2f} to {:.2f}) for {}", text.empty() ? "" : ", ", fit.fit.r_squared,
-                        fit.r_squared.lower, fit.r_squared.upper, kind_name(kind.kind));
+    text += fmt::format("{}{:.2f}{} for {}", text.empty() ? "" : ", ", fit.fit.r_squared,
+                        interval_words(fit.r_squared, 2), kind_name(kind.kind));
   }
   if (text.empty())
     return "";
@@ -197,9 +198,10 @@ std::string dominance_answer(const ReportInput& input) {
 
 std::string roc_answer(const RocCurve& curve, const Interval& area, const RocPoint& at_study) {
   return fmt::format(
-      "In {:.1f} % ({:.1f} to {:.1f}) of random pairs of a mismatch and a disturbance, the mismatch has the "
-      "larger I_{{MPM}}. The best threshold has a J of {:.2f}, that of the study {:.2f}.",
-      100.0 * curve.area, 100.0 * area.lower, 100.0 * area.upper, curve.best.youden(), at_study.youden());
+      "In {:.1f} %{} of random pairs of a mismatch and a disturbance, the mismatch has the larger I_{{MPM}}. "
+      "The best threshold has a J of {:.2f}, that of the study {:.2f}.",
+      100.0 * curve.area, interval_words({100.0 * area.lower, 100.0 * area.upper}, 1), curve.best.youden(),
+      at_study.youden());
 }
 
 std::string fault_size_answer(const std::vector<SizedFault>& faults, double confidence) {

@@ -91,9 +91,10 @@ Section interaction_section(const ReportInput& input) {
   }
   section.add(std::move(figure));
   if (interaction.mvs.empty())
-    section.say(
-        fmt::format("No RGA: it needs as many MVs that can move as CVs at a setpoint or soft limit, {}.",
-                    interaction.cvs.size()));
+    section.say(fmt::format(
+        "No RGA: it needs as many MVs that can move as CVs at a setpoint or soft limit, {}, and a "
+        "model between them that has an inverse.",
+        interaction.cvs.size()));
   else
     section.add(relative_gain_table(study, interaction));
   return section;

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "analysis/findings/kind_findings.hpp"
@@ -14,10 +16,11 @@ const Pen kBest{colour::kVermillion, Dash::none, Mark::diamond, 1.0, 1.0};
 const Pen kStudy{colour::kBlack, Dash::none, Mark::circle, 1.0, 1.4};
 
 std::string point_name(const RocPoint& point) {
-  return fmt::format(
-      "I_MPM > {:.4f}: {:.1f} % of MPM found, {:.1f} % of UD taken for MPM, precision {:.1f} %",
-      point.threshold, 100.0 * point.true_positive_rate, 100.0 * point.false_positive_rate,
-      100.0 * point.precision);
+  return fmt::format("I_MPM > {:.4f}: {:.1f} % of MPM found, {:.1f} % of UD taken for MPM{}", point.threshold,
+                     100.0 * point.true_positive_rate, 100.0 * point.false_positive_rate,
+                     std::isnan(point.precision)  // no loop is above the threshold
+                         ? ""
+                         : fmt::format(", precision {:.1f} %", 100.0 * point.precision));
 }
 
 /// One axis against the other, in percent, over all thresholds; `chance` is what guessing gives at both ends
@@ -47,12 +50,10 @@ std::vector<Panel> panels(const SourceCurve& roc) {
   const double prevalence = 100.0 * static_cast<double>(roc.curve.positives) /
                             static_cast<double>(roc.curve.positives + roc.curve.negatives);
   return {
-      curve_panel(
-          roc, "roc",
-          fmt::format("ROC: area {:.3f} ({:.3f} to {:.3f})", roc.curve.area, roc.area.lower, roc.area.upper),
-          "UD taken for MPM (%)", &RocPoint::false_positive_rate, "MPM found (%)",
-          &RocPoint::true_positive_rate, {0, 100},
-          "Receiver operating characteristic of I_MPM, mismatch against disturbance."),
+      curve_panel(roc, "roc", fmt::format("ROC: area {:.3f}{}", roc.curve.area, interval_words(roc.area, 3)),
+                  "UD taken for MPM (%)", &RocPoint::false_positive_rate, "MPM found (%)",
+                  &RocPoint::true_positive_rate, {0, 100},
+                  "Receiver operating characteristic of I_MPM, mismatch against disturbance."),
       curve_panel(roc, "precision",
                   fmt::format("precision and recall: average {:.3f}", roc.curve.average_precision),
                   "recall: MPM found (%)", &RocPoint::true_positive_rate,

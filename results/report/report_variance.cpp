@@ -90,11 +90,10 @@ void add_fit(PanelScript& panel, const LinearFit& fit, const Pairs& pairs) {
 Panel kind_panel(const ReportInput& input, const KindFindings& kind, const Pairs& pairs) {
   const DiagnosisOptions& options = input.campaign.study.diagnosis;
   const LinearFitIntervals& fit = kind.regression;
-  const std::string title =
-      std::isnan(fit.fit.r_squared)
-          ? kind_name(kind.kind)
-          : fmt::format("{}: R\xC2\xB2 = {:.2f} ({:.2f} to {:.2f})", kind_name(kind.kind), fit.fit.r_squared,
-                        fit.r_squared.lower, fit.r_squared.upper);
+  const std::string title = std::isnan(fit.fit.r_squared)
+                                ? kind_name(kind.kind)
+                                : fmt::format("{}: R\xC2\xB2 = {:.2f}{}", kind_name(kind.kind),
+                                              fit.fit.r_squared, interval_words(fit.r_squared, 2));
   PanelScript panel(fmt::format("ivar_{}", to_string(kind.kind)), title,
                     {.label = "Ivar (-)", .logarithmic = true},
                     {.label = "Ivar_{basis} (-)", .logarithmic = true});

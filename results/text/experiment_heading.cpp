@@ -1,5 +1,6 @@
 #include "results/text/experiment_heading.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -18,9 +19,11 @@ std::string verdict_text(const Study& study, const ExperimentRecord& record) {
     return fmt::format("flagged {}; {}", flagged_text(study, chain), scenario_verdict_text(study, record));
   if (chain.ivar.size() == 0)
     return "not assessed by the chain";
-  return fmt::format("{}located {}, I_MPM {:.3f}: {}", chain.impactful ? "" : "no impact, ",
-                     cv_name(study, chain.predicted_cv), chain.indicator.i_mpm,
-                     source_name(chain.predicted_source));
+  const double i_mpm = chain.indicator.i_mpm;
+  return fmt::format(
+      "{}located {}, {}", chain.impactful ? "" : "no impact, ", cv_name(study, chain.predicted_cv),
+      std::isnan(i_mpm) ? "no I_MPM"
+                        : fmt::format("I_MPM {:.3f}: {}", i_mpm, source_name(chain.predicted_source)));
 }
 
 std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record) {

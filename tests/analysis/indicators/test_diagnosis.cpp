@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/indicators/diagnosis.hpp"
+#include "analysis/study_files/study_library.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -15,6 +16,15 @@ TEST_CASE("location margin: how much farther the first index is from 1 than the 
 
 TEST_CASE("location margin: one index has nothing beside it") {
   CHECK(std::isnan(location_margin(Eigen::Vector2d(kNaN, 3.0), LocationDistance::linear)));
+}
+
+TEST_CASE("source: by the threshold of I_MPM, and none where there is no I_MPM") {
+  Study study = find_study("chapter6");
+  study.diagnosis.mpm_threshold = 0.25;
+  const DiagnosisChain chain(study);
+  CHECK(chain.source_of({.i_mpm = 0.26}) == FaultSource::mpm);
+  CHECK(chain.source_of({.i_mpm = 0.25}) == FaultSource::ud);
+  CHECK(chain.source_of({.i_mpm = kNaN}) == FaultSource::none);
 }
 
 }  // namespace mpm

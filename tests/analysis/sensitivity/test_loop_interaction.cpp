@@ -153,6 +153,12 @@ TEST_CASE("interaction: no relative gains without as many MVs as active CVs, not
   sensitivity.active.pop_back();
   sensitivity.step_response.pop_back();
   CHECK(loop_interaction(study, {{}, {}, {}, {0}}, sensitivity).mvs == std::vector<Eigen::Index>{1});
+  Study no_inverse = study;
+  no_inverse.plant.G(1, 0) = no_inverse.plant.G(1, 1) = {};  // nothing moves the second CV
+  const LoopInteraction singular = loop_interaction(no_inverse, {}, first_order_loops(2, 0.9, 100));
+  CHECK(singular.mvs.empty());
+  CHECK(singular.relative_gain.empty());
+  CHECK(singular.relative_gain_at_maximum.size() == 0);
   const LoopInteraction none = loop_interaction(study, {}, NominalSensitivity{2, {}, {}});
   CHECK(none.frequency.size() == 0);
   CHECK(std::isnan(none.rpn_frequency));

@@ -110,6 +110,16 @@ TEST_CASE("gate file: the numbers of a gate are those that the summary has") {
   }
 }
 
+TEST_CASE("gate file: every number of an archive can have a gate, also one that only some loops give") {
+  Campaign campaign = made_up_campaign();
+  for (ExperimentRecord& record : campaign.records)
+    record.conditions = {.spectral_radius = record.draw.index % 2 == 0 ? 0.5 : 1.5, .other_cv_active = 0.0};
+  const std::vector<Finding> rows = findings_of(campaign).rows, found = gate_findings(campaign);
+  CHECK(rows.size() > gate_findings(campaign.study).size());
+  for (const Finding& row : rows)
+    CHECK(find_finding(found, row.name) != nullptr);
+}
+
 TEST_CASE("gate file: mistakes are refused with line, key, what was found and what is allowed") {
   const std::vector<std::pair<std::string, std::string>> mistakes{
       {"", "g.toml:1: gate: found nothing; allowed: a list of tables, one or more"},

@@ -89,6 +89,10 @@ TEST_CASE("plot text: the text of an experiment names its fault and its verdict"
   chain.indicator.i_mpm = 0.0625;
   testing::set_chain(study, record, chain);
   CHECK(verdict_text(study, record) == "no impact, located heat, I_MPM 0.062: UD");
+  chain.indicator.i_mpm = NAN;
+  chain.predicted_source = FaultSource::none;
+  testing::set_chain(study, record, chain);
+  CHECK(verdict_text(study, record) == "no impact, located heat, no I_MPM");
   CHECK_THAT(experiment_title(study, record.draw), Contains("gain of level/cold x -1.5"));
   CHECK(fault_text(study, {}) == "nothing");
 }

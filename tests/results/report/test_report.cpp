@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -86,6 +87,22 @@ TEST_CASE("report: the page depends on the campaign and the name of the archive 
   const std::string page = page_of(sample(), "some/folder/out.h5");
   CHECK(page == page_of(sample(), "another/out.h5"));
   CHECK_THAT(page, Contains("mpmbench replay out.h5 ") && !Contains("some/folder"));
+}
+
+TEST_CASE("report: no page has a number that does not exist, however few experiments it is of") {
+  const Campaign& all = sample();
+  for (std::size_t count = 1; count <= all.records.size(); ++count) {
+    Campaign few = all;
+    few.records = {all.records.end() - static_cast<std::ptrdiff_t>(count), all.records.end()};
+    remove_methods(few,
+                   [](const std::string& name) { return name != "botelho"; });  // their numbers are made up
+    const std::string page = page_of(few, "out.h5");
+    std::smatch found;
+    const bool has_nan =
+        std::regex_search(page, found, std::regex("[^A-Za-z]nan[^A-Za-z]", std::regex::icase));
+    CAPTURE(count, has_nan ? page.substr(std::max<std::ptrdiff_t>(found.position() - 200, 0), 250) : "");
+    CHECK_FALSE(has_nan);
+  }
 }
 
 TEST_CASE("report: of records that stay in the archive it is the same page with the same loops") {

@@ -227,6 +227,11 @@ TEST_CASE("wrong noise and wrong excitation are refused", "[excitation]") {
                           "md_noise = {standard_deviation = 0.1}\n",
                           "limit_step = [{cv = 'level', sample = 6, soft = [0.1, 1]}]\n"})
     CHECK(testing::refusal(testing::replaced(unexcited, "%", key)) == "accepted");
+  // A side without a soft limit stays without one, whatever the hard limit is.
+  CHECK(
+      testing::refusal(testing::replaced(
+          testing::replaced(unexcited, "%", "limit_step = [{cv = 'heat', sample = 6, soft = [-inf, 0.4]}]\n"),
+          "hard = [-inf, 3]", "hard = [-3, 3]")) == "accepted");
 }
 
 }  // namespace
