@@ -330,6 +330,7 @@ RecordAssessment assessed(const AssessArguments& options, const Study& study,
   assessment.model = std::move(judged.said.back());
   judged.said.pop_back();
   assessment.said = std::move(judged.said);
+  assessment.unexplained = unexplained_cvs(frame->as_kept, assessment.loop, frame->model_error);
   tell_benchmark(*frame, assessment);
   for (std::string& warning : column_lags(*frame, assessment.record))
     assessment.warnings.push_back(std::move(warning));

@@ -11,13 +11,13 @@
 #include "plants/linear/settling_time.hpp"
 #include "plants/linear/transfer_function.hpp"
 #include "plants/linear/transfer_matrix.hpp"
+#include "plants/linear/zero_order_hold.hpp"
 #include "plants/same_members.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr double kRoundingOfPlace = 1e-9;  // of an interval
-constexpr double kTimesToSettle = 21.0;    // sums of time constants: e^-21 = 1e-9
 
 /// x, or the whole number that it is but for rounding.
 double snapped(double x) {
@@ -91,6 +91,10 @@ StepCoefficients StepCoefficients::followed_by(const TransferFunction& H) const 
   const Eigen::VectorXd values = sampled(interval_);
   const Eigen::Index n = values.size();
   const double settled = H.dead_time() + kTimesToSettle * sum_of_time_constants(H);
+  if (!(end() + settled <= kMaxDelay * interval_))
+    throw InputError("coefficients of a step response behind a further lag",
+                     fmt::format("{:.3g}", (end() + settled) / interval_),
+                     fmt::format("at most {}", kMaxDelay));
   const Eigen::Index count = n + static_cast<Eigen::Index>(std::ceil(settled / interval_));
   Eigen::RowVectorXd slopes = Eigen::RowVectorXd::Constant(count + 1, rate());
   slopes.head(n) = values.transpose() / interval_;

@@ -8,6 +8,9 @@ namespace mpm {
 
 class TransferFunction;
 
+/// Sums of its time constants after which a transfer function has settled: e^-21 = 1e-9.
+inline constexpr double kTimesToSettle = 21.0;
+
 /// A step response S(t) by its coefficients, as dynamic matrix control has it: S(0) = 0, S(T) = s_1, ...,
 /// S(n T) = s_n, straight lines in between. After the last coefficient it stays there, or, of a channel that
 /// integrates, goes on with the last slope, (s_n - s_(n-1)) / T.
@@ -42,7 +45,7 @@ class StepCoefficients {
   /// S(t - delta).
   StepCoefficients with_dead_time_shifted(double delta) const;
   /// The response of H(s), which has no coefficients, to S(t): exact at multiples of T, and long enough for H
-  /// to settle.
+  /// to settle. Errors: InputError for more than kMaxDelay coefficients.
   StepCoefficients followed_by(const TransferFunction& H) const;
 
   friend bool operator==(const StepCoefficients& a, const StepCoefficients& b);
