@@ -109,7 +109,7 @@ void check_basis(const Study& study, const QpSolverFactory& factory, BasisCase& 
   if (!repeated && !study.simulation.is_excited())
     why += "; diagnosis.self_check = \"repeat\" is the check of a study without excitation";
   Eigen::Index worst = 0;
-  (ivar.array() - 1.0).abs().maxCoeff(&worst);
+  (ivar.array() - 1.0).abs().maxCoeff<Eigen::PropagateNaN>(&worst);
   basis.healthy =
       (ivar.array() >= options.self_check_lower && ivar.array() <= options.self_check_upper).all();
   const std::string& name = study.plant.cvs[static_cast<std::size_t>(worst)].name;

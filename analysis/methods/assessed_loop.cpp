@@ -4,9 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "analysis/sensitivity/control_structure.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/washout.hpp"
+#include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "plants/analyser.hpp"
 #include "plants/linear/settling_time.hpp"
@@ -112,7 +115,8 @@ Eigen::Index slowest_settling(const Study& study) {
   for (Eigen::Index cv = 0; cv < study.plant.G.rows(); ++cv)
     for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input)
       slowest = std::max(slowest, settling_time(study.assessed_channel(cv, input)));
-  return static_cast<Eigen::Index>(std::ceil(slowest / study.controller.sample_time));
+  constexpr double kLongest = 1e9;  // samples: more than any record has
+  return static_cast<Eigen::Index>(std::min(std::ceil(slowest / study.controller.sample_time), kLongest));
 }
 
 Eigen::MatrixXd behind_washout(const Study& study, Eigen::MatrixXd signals) {
@@ -225,6 +229,41 @@ AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, An
       hold(timings[i], from == AnalysesHeld::from_shown ? timings[i].delay : 0, whole.y.row(cv),
            whole.y_sim.row(cv));
   return loop.whole ? window_of(whole, loop.first, loop.samples()) : whole;
+}
+
+std::optional<std::string> out_of_proportion(const Study& study, const AssessedLoop& loop) {
+  const AssessedLoop& whole = loop.from_start();
+  const auto &cvs = study.plant.cvs, &mvs = study.plant.mvs, &mds = study.plant.mds;
+  enum class Gaps { none, some };
+  const auto first_in = [](const Eigen::MatrixXd& signal, Gaps gaps,
+                           const auto& name) -> std::optional<std::string> {
+    if ((signal.array().abs() <= kLargestValue).all())
+      return std::nullopt;
+    for (Eigen::Index k = 0; k < signal.cols(); ++k)
+      for (Eigen::Index row = 0; row < signal.rows(); ++row)
+        if (const double value = signal(row, k);
+            std::isnan(value) ? gaps == Gaps::none : std::abs(value) > kLargestValue)
+          return fmt::format("{} of {} at sample {}", name(static_cast<std::size_t>(row)), value, k);
+    return std::nullopt;
+  };
+  const auto name_of = [](const std::vector<PlantModel::Variable>& variables, const char* what) {
+    return [&variables, what](std::size_t row) { return what + variables[row].name; };
+  };
+  const auto candidate = [](std::size_t row) { return fmt::format("candidate {}", row + 1); };
+  std::optional<std::string> found = first_in(whole.y, Gaps::some, name_of(cvs, ""));
+  if (!found)
+    found = first_in(whole.u, Gaps::none, name_of(mvs, ""));
+  if (!found)
+    found = first_in(whole.d, Gaps::none, name_of(mds, ""));
+  if (!found)
+    found = first_in(whole.y_sim, Gaps::none, name_of(cvs, "y_sim of "));
+  if (!found)
+    found = first_in(whole.u_target, Gaps::some, name_of(mvs, "target of "));
+  if (!found)
+    found = first_in(whole.y_set, Gaps::some, name_of(cvs, "setpoint of "));
+  if (!found)
+    found = first_in(whole.candidates, Gaps::some, candidate);
+  return found;
 }
 
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context) {

@@ -120,9 +120,17 @@ struct AssessmentContext {
   std::shared_ptr<const Study> benchmark_study = {};
   /// What the benchmark shows of the errors of the model; null: the model is taken for exact.
   std::shared_ptr<const ModelCorrection> correction = {};
+  std::string not_learnt = {};  ///< why nothing can be learnt of them, where it should be; otherwise empty
 
   const Study& study_of_benchmark() const { return benchmark_study ? *benchmark_study : study; }
 };
+
+/// The largest value with which methods can compute: sums of its fourth power are numbers.
+inline constexpr double kLargestValue = 1e60;
+
+/// "y1 of 1e+160 at sample 3": the first value of a record of the loop, from its start on, that is not finite
+/// or beyond kLargestValue; none where all have numbers. CVs, setpoints and candidates may be missing (NaN).
+std::optional<std::string> out_of_proportion(const Study& study, const AssessedLoop& loop);
 
 /// The CVs of the basis case as the historian keeps them, ny x N; a method knows no others.
 Eigen::MatrixXd recorded_basis(const AssessmentContext& context);

@@ -1,6 +1,7 @@
 #include "analysis/methods/assessment_method.hpp"
 
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -23,6 +24,25 @@ std::string missing_samples(const Study& study, const Eigen::MatrixXd& y) {
              ? ""
              : fmt::format("{} of {} samples of {}", missing(worst), y.cols(),
                            study.plant.cvs[static_cast<std::size_t>(worst)].name);
+}
+
+/// Which score of a verdict is no number; none where all are. Nothing need be said of a CV.
+std::optional<std::string> missing_score(const Study& study, const Assessment& assessment) {
+  for (std::size_t cv = 0; cv < assessment.cvs.size(); ++cv)
+    if (assessment.cvs[cv].flagged && std::isnan(assessment.cvs[cv].score))
+      return fmt::format("its score of {} is not a number", study.plant.cvs[cv].name);
+  return std::isnan(assessment.score) ? std::optional("its score is not a number") : std::nullopt;
+}
+
+/// Why no method can learn from the benchmark; none: they can.
+std::optional<std::string> unusable_benchmark(const AssessmentContext& context) {
+  if (!context.benchmark)
+    return std::nullopt;
+  if (const std::optional<std::string> found = out_of_proportion(context.study, *context.benchmark))
+    return fmt::format("the benchmark is out of all proportion: {}", *found);
+  return context.not_learnt.empty()
+             ? std::nullopt
+             : std::optional("the benchmark does not show the errors of the model: " + context.not_learnt);
 }
 
 bool some_setpoint_moves(const AssessedLoop& loop) {
@@ -64,6 +84,7 @@ Assessor::Assessor(const AssessmentMethodInfo& info, const AssessmentContext& co
       relative_(info.relative && context.correction),
       context_(context),
       make_(info.make),
+      unusable_(unusable_benchmark(context)),
       holds_analyses_(requirements_.complete_record && has_analysers(context.study.controller.analysers)) {
   if (!holds_analyses_ && !relative_)
     return;
@@ -85,20 +106,35 @@ Assessment Assessor::assess(const AssessedLoop& loop) {
 Assessment Assessor::assess_seen(const AssessedLoop& loop) {
   if (const std::optional<std::string> unmet = unmet_requirement(requirements_, seen(), loop))
     return Assessment::not_applicable(*unmet);
-  if (!method_) {
-    if (relative_ && seen_->benchmark)
-      seen_->benchmark = context_.correction->corrected(*seen_->benchmark, benchmark_);
-    method_ = make_(seen());
-  }
+  if (unusable_)
+    return Assessment::failed(*unusable_);
+  if (const std::optional<std::string> found = out_of_proportion(context_.study, loop))
+    return Assessment::failed(fmt::format("the loop is out of all proportion: {}", *found));
   try {
+    if (!method_)
+      learn();
     Assessment assessment = method_->assess(relative_ ? context_.correction->corrected(loop, whole_) : loop);
     assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());
-    if (assessment.status == AssessmentStatus::ok && assessment.flagged && locates_cvs_ &&
-        !assessment.worst_cv())
+    if (assessment.status != AssessmentStatus::ok)
+      return assessment;
+    if (const std::optional<std::string> score = missing_score(context_.study, assessment))
+      return Assessment::failed(*score);
+    if (assessment.flagged && locates_cvs_ && !assessment.worst_cv())
       return Assessment::failed("it flags the loop and names no CV");
     return assessment;
   } catch (const InputError& error) {
     return Assessment::failed(error.what());
+  }
+}
+
+void Assessor::learn() {
+  try {
+    if (relative_ && seen_->benchmark)
+      seen_->benchmark = context_.correction->corrected(*seen_->benchmark, benchmark_);
+    method_ = make_(seen());
+  } catch (const InputError& error) {
+    unusable_ = error.what();
+    throw;
   }
 }
 

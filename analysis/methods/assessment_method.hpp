@@ -121,13 +121,15 @@ class Assessor {
   /// `context` must outlive the assessor.
   Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context);
 
-  /// The verdict on a loop of the context's study. It is `failed`, with the reason, if the method refuses the
-  /// records of this loop, so that one odd loop does not cost the verdicts on the others, or if a method that
-  /// locates CVs flags the loop without the score of any CV. Throws InputError as AssessmentMethodInfo::make.
+  /// The verdict on a loop of the context's study. It is `failed`, with the reason, so that one odd loop does
+  /// not cost the verdicts on the others: if a value of the loop or of the benchmark is out_of_proportion(),
+  /// if the method refuses the records of either, if the score of the loop or of a CV that it judges is not a
+  /// number, or if a method that locates CVs flags the loop without the score of any CV.
   Assessment assess(const AssessedLoop& loop);
 
  private:
   Assessment assess_seen(const AssessedLoop& loop);
+  void learn();
   AssessedLoop with_held(const AssessedLoop& loop, AssessedLoop& whole) const;
   const AssessmentContext& seen() const { return seen_ ? *seen_ : context_; }
 
@@ -136,6 +138,7 @@ class Assessor {
   bool relative_;
   const AssessmentContext& context_;
   std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext&)> make_;
+  std::optional<std::string> unusable_;  ///< why nothing can be learnt from the benchmark
   bool holds_analyses_;
   std::unique_ptr<AssessmentContext> seen_;   ///< of a method that is relative, or to which analyses are held
   AssessedLoop held_benchmark_, held_;        ///< with_analyses_held()

@@ -163,9 +163,9 @@ class AnswerReader {
       if (!flag.is_boolean())
         refuse("cv_flagged", flag, "true, false or null");
       of_cv.flagged = flag.get<bool>();
-      of_cv.score = scores           ? number("cv_score", list("cv_score", *scores, count)[i])
-                    : *of_cv.flagged ? 1.0
-                                     : 0.0;
+      of_cv.score = scores ? number("cv_score", list("cv_score", *scores, count)[i]) : kNaN;
+      if (std::isnan(of_cv.score))
+        of_cv.score = *of_cv.flagged ? 1.0 : 0.0;
       if (sources != nullptr && !list("cv_source", *sources, count)[i].is_null())
         of_cv.source = word("cv_source", (*sources)[i], FaultSource::other);
     }

@@ -19,8 +19,8 @@ AssessmentRecord MethodPanel::assessed(std::size_t method, const AssessedLoop& l
     return timed(method, assessors_[method], loop);
   // The controller or the excitation is another one; the benchmark is still what the study was designed for.
   const AssessmentContext context{
-      own->study,         own->basis, context_.factory, context_.benchmark, context_.benchmark_study,
-      context_.correction};
+      own->study,          own->basis,         context_.factory, context_.benchmark, context_.benchmark_study,
+      context_.correction, context_.not_learnt};
   Assessor assessor(method_table(own->study.assessment).method(forms_[method]->method().name), context);
   return timed(method, assessor, loop);
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/records/channel_error_fit.hpp"
+#include "analysis/statistics/best_of.hpp"
 
 namespace mpm {
 namespace {
@@ -25,8 +26,8 @@ class ModelCheck final : public AssessmentMethod {
     assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const ChannelErrorFit fit = fits_.of(loop, cv);
-      const double off = fit.a.size() > 0 ? fit.a.cwiseAbs().maxCoeff() / kUsual : 0.0;
-      const double score = std::max(off, std::sqrt(fit.left / fit.noise));
+      const double off = fit.a.size() > 0 ? fit.a.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / kUsual : 0.0;
+      const double score = larger_or_nan(off, std::sqrt(fit.left / fit.noise));
       assessment.cvs.push_back({score > kFarTooLarge, score});
       assessment.score = std::max(assessment.score, score);
     }
@@ -38,7 +39,29 @@ class ModelCheck final : public AssessmentMethod {
   ChannelErrorFits fits_;
 };
 
+/// Over the samples that are there, about their mean.
+double variance_of_known(const Eigen::RowVectorXd& y) {
+  const auto is_there = !y.array().isNaN();
+  const auto count = static_cast<double>(is_there.count());
+  const double mean = is_there.select(y.array(), 0.0).sum() / count;
+  return is_there.select((y.array() - mean).square(), 0.0).sum() / count;
+}
+
 }  // namespace
+
+std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoop& loop, double delta) {
+  constexpr double kMostLeft = 0.5, kMostNoise = 10.0;
+  const ChannelErrorFits fits(study, delta);
+  std::vector<UnexplainedCv> found;
+  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
+    const ChannelErrorFit fit = fits.of(loop, cv);
+    const double noise = std::sqrt(fit.noise) / study.simulation.noise_standard_deviation(cv);
+    if (std::isfinite(noise) && noise > kMostNoise &&
+        fit.left > kMostLeft * variance_of_known(loop.y.row(cv)))
+      found.push_back({cv, noise});
+  }
+  return found;
+}
 
 AssessmentMethodInfo model_check_method(double delta) {
   return {

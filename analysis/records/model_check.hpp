@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "analysis/methods/assessment_method.hpp"
 
 namespace mpm {
@@ -16,5 +18,16 @@ inline constexpr const char* kModelCheck = "model-error";
 /// it is about 1. The controller plays no part in it. A method that only `assess` has: it knows `delta`, and
 /// its threshold is that of the simulated records. With delta = 0 the model is exact.
 AssessmentMethodInfo model_check_method(double delta);
+
+/// A CV whose noise is another than that of its study.
+struct UnexplainedCv {
+  Eigen::Index cv;
+  double noise;  ///< its standard deviation, in those that the study states
+};
+
+/// The CVs that the model does not explain, whatever its errors: it leaves more than half of what they do,
+/// and their noise has more than ten times the standard deviation that the study states. `score` above cannot
+/// say so, since it is relative to the noise of the record.
+std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoop& loop, double delta);
 
 }  // namespace mpm

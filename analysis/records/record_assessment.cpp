@@ -233,6 +233,7 @@ std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Stu
   assessment.model = std::move(judged.said.back());
   judged.said.pop_back();
   assessment.said = std::move(judged.said);
+  assessment.unexplained = unexplained_cvs(frame->as_kept, assessment.loop, frame->model_error);
   tell_benchmark(*frame, assessment);
   for (std::string& warning : column_lags(*frame, assessment.record))
     assessment.warnings.push_back(std::move(warning));
@@ -250,7 +251,8 @@ RecordAnswers RecordAssessment::answers_of(std::size_t method) const {
           .trial_of_said = trial_of(method),
           .model = model,
           .trial_of_model = trial ? &trial->model : nullptr,
-          .allows_errors = model_error > 0.0};
+          .allows_errors = model_error > 0.0,
+          .has_unexplained = !unexplained.empty()};
 }
 
 Eigen::Index worst_cv(const RecordAssessment& of) {

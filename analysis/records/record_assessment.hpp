@@ -17,6 +17,7 @@
 #include "analysis/methods/ours/repair_prospects.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/controller_check.hpp"
+#include "analysis/records/model_check.hpp"
 #include "analysis/records/record_verdict.hpp"
 #include "analysis/records/trial_record.hpp"
 #include "scenarios/loop/plant_record.hpp"
@@ -53,7 +54,8 @@ struct RecordAssessment {
   Eigen::Index unjudged = 0;           ///< samples at the start that only fill the memory of the model
   std::vector<AssessmentRecord> said;  ///< by each method; the first one is the verdict
   AssessmentRecord model;              ///< model_check_method()
-  AssessmentRecord odds = {};          ///< `likelihood`, of a record with a fault: of which kind it is
+  std::vector<UnexplainedCv> unexplained = {};
+  AssessmentRecord odds = {};  ///< `likelihood`, of a record with a fault: of which kind it is
   ControllerCheck controller;
   double model_error = 0.0;  ///< RecordFrame::model_error
   DataOptions data;          ///< of the study, by which the record was read

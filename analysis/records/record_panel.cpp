@@ -153,10 +153,9 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
       AssessmentContext context{study, frame_.basis, frame_.factory,
                                 of_benchmark != nullptr ? window_of(*of_benchmark, first, count)
                                                         : nominal_benchmark(study, frame_.basis)};
-      context.correction = of_benchmark != nullptr
-                               ? learnt_model(study, frame_.basis.point, *context.benchmark)
-                               : learnt_model(study, frame_.basis.point,
-                                              without_moves(*context.benchmark, frame_.basis.point));
+      learn_model(of_benchmark != nullptr ? *context.benchmark
+                                          : without_moves(*context.benchmark, frame_.basis.point),
+                  context);
       return std::make_unique<MethodPanel>(study, std::move(context), std::vector{name});
     };
     if (has_benchmark) {

@@ -23,7 +23,7 @@ bool is_above(const AssessmentRecord& said, const TrialFindings* trial) {
 }
 
 bool RecordAnswers::model_explains() const {
-  return allows_errors && model.answered() && !is_above(model, trial_of_model);
+  return allows_errors && model.answered() && !has_unexplained && !is_above(model, trial_of_model);
 }
 
 bool RecordAnswers::has_fault() const {

@@ -33,6 +33,7 @@ struct RecordAnswers {
   const AssessmentRecord& model;  ///< of model_check_method()
   const TrialFindings* trial_of_model;
   bool allows_errors;  ///< errors of the model are allowed for; otherwise the method has the only word
+  bool has_unexplained = false;  ///< there are unexplained_cvs()
 
   bool model_explains() const;
   /// Does the method flag the record, and does the model not explain it?

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/sensitivity/relative_gain.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
@@ -111,9 +112,9 @@ LoopInteraction loop_interaction(const Study& study, const OperatingPoint& point
     const double frequency = refined_maximum(result.frequency, at, weight);
     result.peaks.push_back({frequency, weight(frequency)});
   }
-  const auto largest = std::max_element(
-      result.peaks.begin(), result.peaks.end(),
-      [](const LoopInteraction::Peak& a, const LoopInteraction::Peak& b) { return a.rpn < b.rpn; });
+  const auto largest = best_of(result.peaks, &LoopInteraction::Peak::rpn);
+  if (largest == result.peaks.end())
+    return {};
   result.rpn_frequency = largest->frequency;
   result.rpn_maximum = largest->rpn;
 

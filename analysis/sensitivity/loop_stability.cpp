@@ -18,6 +18,10 @@
 namespace mpm {
 namespace {
 
+/// States and past inputs of a loop above which nobody waits for its eigenvalues: they cost ten times the
+/// cube of it.
+constexpr Eigen::Index kMostStates = 1000;
+
 using Indices = std::vector<Eigen::Index>;
 
 Eigen::Index count_of(const Indices& indices) {
@@ -187,6 +191,8 @@ std::optional<Eigen::MatrixXd> target_of_bias(const TransferMatrix& model, const
 }
 
 double spectral_radius_of(const Eigen::MatrixXd& A) {
+  if (!A.allFinite())
+    return kNaN;
   return A.rows() == 0 ? 0.0 : A.eigenvalues().cwiseAbs().maxCoeff();
 }
 
@@ -229,6 +235,8 @@ LoopStability::LoopStability(const Study& study, const OperatingPoint& point)
   const Eigen::Index nu = count_of(mvs_), hp = study.controller.prediction_horizon;
   const std::vector<DelayedChannel> channels = channels_of(model_, sample_time_, cvs_, mvs_);
   const Eigen::Index memory = memory_of(channels);
+  if (nu * memory > kMostStates)
+    return;
   const Realisation model(channels, count_of(cvs_), nu, memory);
   const Eigen::MatrixXd response = free_response_of(model, nu, memory, hp);
   // Over the limits, and inside: without targets nothing would act there.
@@ -283,6 +291,8 @@ double LoopStability::radius_with(const Law& law, const TransferMatrix& plant) c
       channel.model.d = 0.0;
     }
   const Eigen::Index memory = std::max(memory_of(all), memory_of(real));
+  if (nu * memory > kMostStates)
+    return kNaN;
   const Realisation model(all, ny, nu, memory), simulated(wrong, ny, nu, memory), own(real, ny, nu, memory);
   const Eigen::Index nx = model.A.rows(), nr = own.A.rows(), n = nx + nr, past = nu * memory;
 

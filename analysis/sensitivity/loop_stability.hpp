@@ -43,7 +43,7 @@ class LoopStability {
  public:
   /// `point` is the operating point of the study, which must outlive the object. No law is known of a
   /// controller that is a program, of one slack for all samples of a CV (not linear), of a nonlinear plant,
-  /// and where the active CVs do not determine the targets.
+  /// where the active CVs do not determine the targets, and where more than 1000 inputs are on their way.
   LoopStability(const Study& study, const OperatingPoint& point);
 
   /// Spectral radius of the loop with this plant, of the shape of the model: below 1 it is stable. NaN when

@@ -39,7 +39,10 @@ Eigen::MatrixXcd relative_gains(const Eigen::Ref<const Eigen::MatrixXcd>& G) {
 double rpn_weight(const Eigen::Ref<const Eigen::MatrixXcd>& T0) {
   require_square("T0 of an RPN weight", T0);
   const Eigen::MatrixXcd S0 = Eigen::MatrixXcd::Identity(T0.rows(), T0.cols()) - T0;
-  return Eigen::JacobiSVD<Eigen::MatrixXcd, Eigen::NoQRPreconditioner>(S0 * T0).singularValues()(0);
+  const Eigen::MatrixXcd product = S0 * T0;
+  if (!product.allFinite())
+    return kNaN;
+  return Eigen::JacobiSVD<Eigen::MatrixXcd, Eigen::NoQRPreconditioner>(product).singularValues()(0);
 }
 
 }  // namespace mpm

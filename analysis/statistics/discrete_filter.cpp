@@ -17,6 +17,8 @@ void require_monic(const Eigen::Ref<const Eigen::VectorXd>& a) {
     throw InputError("monic polynomial", "no coefficient", "1 or more");
   if (a(0) != 1.0)
     throw InputError("first coefficient of a monic polynomial", fmt::format("{}", a(0)), "1");
+  if (!a.allFinite())
+    throw InputError("monic polynomial", "a coefficient that is not finite", "finite coefficients");
 }
 
 /// Roots in z: those of z^n + a_1 z^(n-1) + ... + a_n.

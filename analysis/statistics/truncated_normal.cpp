@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -115,7 +116,7 @@ Interval shortest_interval(const std::vector<TruncatedNormal>& parts, double pro
 }
 
 double log_sum(double a, double b) {
-  const double larger = std::max(a, b);
+  const double larger = larger_or_nan(a, b);
   return std::isfinite(larger) ? larger + std::log1p(std::exp(std::min(a, b) - larger)) : larger;
 }
 

@@ -54,6 +54,19 @@ OptionKeys study_keys(Study& study, const std::filesystem::path& folder) {
   document.table(table, key_names(study_file_keys(table))).refuse(key, found, allowed);
 }
 
+/// A CV of which no analysis is there by the end of the record is never measured.
+void refuse_silent_analysers(const TomlTable& document, const Study& study) {
+  const std::vector<AnalyserTiming>& timings = study.controller.analysers;
+  for (std::size_t cv = 0; cv < timings.size(); ++cv)
+    if (const AnalyserTiming& timing = timings[cv]; timing.taken(study.simulation.samples - 1) < 0)
+      throw InputError(
+          fmt::format("{}.cv.{}.analyser_delay", document.where("controller"), study.plant.cvs[cv].name),
+          fmt::format("{} samples", timing.delay),
+          fmt::format("fewer than the {} of the record (simulation.samples), which ends before the first "
+                      "analysis is there",
+                      study.simulation.samples));
+}
+
 /// The moving windows of (6.13) and (6.14), in samples, against the horizon and the length of the record.
 void refuse_unusable_windows(const TomlTable& document, const Study& study) {
   const WindowScan scan = window_scan(study);
@@ -86,6 +99,7 @@ Study read_study(std::string_view text, const std::string& file_name,
   const OptionKeys keys = study_keys(study, std::filesystem::path(file_name).parent_path());
   const TomlTable document(toml, file_name, key_names(keys), draft);
   read_keys(document, keys);
+  refuse_silent_analysers(document, study);
   refuse_unusable_windows(document, study);
   study.source = text;
   return study;

@@ -15,6 +15,8 @@ namespace {
 
 // Bounds on the size of the matrices and of the history of inputs that a file can ask for.
 constexpr std::int64_t kMaxHorizon = 2000;
+constexpr double kMostProgramNumbers =
+    5e7;  // of the quadratic program, which a controller holds several times
 
 /// A flow into a level that is not known is found within some twenty samples; more makes the moves noisier.
 constexpr double kBiasRamp = 0.05;
@@ -155,7 +157,8 @@ OptionKeys keys(CvOptions& cv) {
           analyser_period(
               cv.analyser,
               "of a CV of an analyser: samples from one analysis to the next, between which it is held"),
-          analyser_delay(cv.analyser, "samples from taking a sample of the stream to the analysis"),
+          analyser_delay(cv.analyser, "samples from taking a sample of the stream to the analysis")
+              .also("below `simulation.samples`"),
           key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
           key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
 }
@@ -228,6 +231,23 @@ void refuse_long_dead_times(const TomlTable& controller, const Study& study) {
       }
 }
 
+/// The quadratic program has a column for each planned move, and a row for each of them and each predicted
+/// output.
+void refuse_large_program(const TomlTable& controller, const Study& study) {
+  const auto outputs = static_cast<double>(study.cv_count() * study.controller.prediction_horizon);
+  const auto of_sample = static_cast<double>(study.mv_count());
+  const double moves = of_sample * static_cast<double>(study.controller.control_horizon);
+  if ((outputs + moves) * moves <= kMostProgramNumbers)
+    return;
+  const double most = 0.5 * (std::sqrt(outputs * outputs + 4.0 * kMostProgramNumbers) - outputs);
+  controller.refuse(
+      "control_horizon",
+      fmt::format("{} ({} moves and {} predicted outputs)", study.controller.control_horizon, moves, outputs),
+      fmt::format("at most {} with this plant and prediction horizon: a quadratic program of {:g} "
+                  "numbers",
+                  std::floor(most / of_sample), kMostProgramNumbers));
+}
+
 OptionKeys controller_program_keys(std::vector<std::string>& command, double& time_limit) {
   return {key::command("command", command,
                        "the program, found in PATH, and its arguments; it runs in the current folder"),
@@ -296,8 +316,9 @@ OptionKeys controller_keys(Study& study) {
               .required(),
           key::option("control_horizon", "whole number", "mh", "samples")
               .required()
-              .allow("1 to `prediction_horizon`")
+              .allow("1 to `prediction_horizon`; a quadratic program of at most 5e7 numbers")
               .read(read_control_horizon),
+          key::check([&study](const TomlTable& table) { refuse_large_program(table, study); }),
           key::option("move_blocks", "list of whole numbers",
                       "samples for which each planned position of the MVs is held (move blocking); "
                       "`control_horizon` numbers; the last one is held to the end of the horizon",

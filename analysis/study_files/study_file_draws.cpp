@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "analysis/study_files/study_file_parts.hpp"
+#include "analysis/study_files/transfer_function_keys.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/fault_draw.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -113,6 +116,41 @@ void refuse_impossible_shift(const TomlTable& mismatch, const Distribution& shif
   }
 }
 
+/// What the channels of a plant remember is memory of the program.
+void refuse_long_channels(const TomlTable& mismatch, const Study& study) {
+  const MismatchRanges& ranges = study.mismatch;
+  if (study.nonlinear || study.experiments.mpm + study.experiments.mpm_ud == 0)
+    return;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv) {
+      const TransferFunction& channel = study.plant.G(cv, mv);
+      LongestDraws longest;
+      const auto check = [&](const char* key, const Distribution& draws) {
+        refuse_long_draws(mismatch, key, draws, channel,
+                          fmt::format("{}/{}", study.plant.cvs[static_cast<std::size_t>(cv)].name,
+                                      study.plant.mvs[static_cast<std::size_t>(mv)].name),
+                          longest, study.controller.sample_time);
+      };
+      longest.dead_time_shift = largest_draw(ranges.dead_time_shift);
+      check("dead_time_shift", ranges.dead_time_shift);
+      longest.time_factor = largest_draw(ranges.time_constant_factor);
+      check("time_constant_factor", ranges.time_constant_factor);
+      // A further lag comes alone.
+      for (const auto& [key, parameter, draws] :
+           {std::tuple("second_order", MismatchParameter::second_order, &ranges.second_order),
+            {"inverse_response", MismatchParameter::inverse_response, &ranges.inverse_response}}) {
+        const auto place =
+            std::find(kRandomMismatchParameters.begin(), kRandomMismatchParameters.end(), parameter) -
+            kRandomMismatchParameters.begin();
+        if (ranges.parameter_weight[static_cast<std::size_t>(place)] == 0.0)
+          continue;
+        longest = {.lag = largest_draw(*draws) *
+                          std::max(std::abs(channel.residence_time()), study.controller.sample_time)};
+        check(key, *draws);
+      }
+    }
+}
+
 OptionKeys mismatch_ranges_keys(Study& study) {
   MismatchRanges& ranges = study.mismatch;
   constexpr std::size_t kClassic = 3;  // those of table 6.4, without which the others do not stand
@@ -149,6 +187,7 @@ OptionKeys mismatch_ranges_keys(Study& study) {
                             "1"),
           key::distribution("inverse_response", ranges.inverse_response, positive,
                             "T of a right-half-plane zero, G (1 - T s) / (1 + T s), over the same", "1"),
+          key::check([&study](const TomlTable& table) { refuse_long_channels(table, study); }),
           impact_key(ranges.impact, "effect to which every mismatch is scaled: see below", "1"),
           plant_parameters_key(ranges.plant_parameters, study)};
 }

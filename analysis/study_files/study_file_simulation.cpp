@@ -15,6 +15,7 @@ namespace mpm {
 namespace {
 
 constexpr std::int64_t kMaxSamples = 1'000'000;
+constexpr double kMostRecordNumbers = 5e7;      // of a record of a loop, all variables together
 constexpr std::size_t kMaxSteps = kMaxSamples;  // of one list
 
 /// One number for all variables, or a table with one each; `each` says what they are.
@@ -290,6 +291,13 @@ void sort_steps(SimulationOptions& options) {
             });
 }
 
+void refuse_large_record(const TomlTable& simulation, const Study& study) {
+  const auto variables = static_cast<double>(study.cv_count() + study.mv_count() + study.md_count());
+  if (variables * study.simulation.samples > kMostRecordNumbers)
+    simulation.refuse("samples", fmt::format("{} of {} variables", study.simulation.samples, variables),
+                      fmt::format("at most {} with this plant", std::floor(kMostRecordNumbers / variables)));
+}
+
 OptionKeys simulation_keys(Study& study) {
   SimulationOptions& options = study.simulation;
   const auto read_noise = [&study](const TomlTable& table, const std::string& key) {
@@ -308,7 +316,8 @@ OptionKeys simulation_keys(Study& study) {
   return {
       key::whole("samples", options.samples, 1, kMaxSamples, "length of the record", "samples")
           .required()
-          .also("at least the longest moving window + 20"),
+          .also("at least the longest moving window + 20; at most 5e7 over the variables of the plant"),
+      key::check([&study](const TomlTable& table) { refuse_large_record(table, study); }),
       key::option("noise_standard_deviation", "number, or table",
                   "of the measurement noise; one for all CVs, or `{y1 = 0.01, y2 = 0.02}` with every CV",
                   "CV")

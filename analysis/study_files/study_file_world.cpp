@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "analysis/study_files/study_file_parts.hpp"
+#include "analysis/study_files/transfer_function_keys.hpp"
+#include "plants/linear/settling_time.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
@@ -16,6 +18,7 @@ namespace {
 
 constexpr std::int64_t kMostWorlds = 10'000, kMostCostLoops = 10'000;
 constexpr std::size_t kMostParameters = 200;
+constexpr const char* kNoLongMemory = "no channel looks back over more than 1e6 samples";
 
 /// Sizes are parts of what must be there.
 void refuse_sizes_of_nothing(const TomlTable& background, const BackgroundRanges& ranges,
@@ -74,6 +77,31 @@ OptionKeys parameter_keys(WorldParameter& parameter, const Study& study) {
           key::check(check_ends)};
 }
 
+/// What channels remember is memory of the program.
+void refuse_long_world(const TomlTable& world, const WorldRanges& ranges, const Study& study) {
+  const TransferMatrix& G = study.plant.G;
+  for (Eigen::Index cv = 0; cv < G.rows() && !study.nonlinear; ++cv)
+    for (Eigen::Index input = 0; input < G.cols(); ++input) {
+      const TransferFunction& channel = G(cv, input);
+      LongestDraws longest;
+      const auto check = [&](const char* key, const Distribution& draws) {
+        refuse_long_draws(world, key, draws, channel,
+                          fmt::format("{}/{}", study.plant.cvs[static_cast<std::size_t>(cv)].name,
+                                      input_names(study.plant)[static_cast<std::size_t>(input)]),
+                          longest, study.controller.sample_time);
+      };
+      longest.dead_time_factor = largest_draw(ranges.dead_time_factor);
+      check("dead_time_factor", ranges.dead_time_factor);
+      longest.dead_time_shift = largest_draw(ranges.dead_time_shift);
+      check("dead_time_shift", ranges.dead_time_shift);
+      longest.time_factor = largest_draw(ranges.time_constant_factor);
+      longest.least_time_factor = ranges.time_constant_factor.minimum();
+      check("time_constant_factor", ranges.time_constant_factor);
+      longest.lag = largest_draw(ranges.extra_lag) * sum_of_time_constants(channel);
+      check("extra_lag", ranges.extra_lag);
+    }
+}
+
 OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
   const NumberRule positive = NumberRule::positive(), rule = NumberRule::at_least(0);
   // A resolved study has the defaults of channels beside parameters of the plant.
@@ -107,12 +135,16 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
       key::distribution("gain_factor", ranges.gain_factor, positive,
                         "factor of the gain of a channel of the plant, in each channel another one", "1"),
       key::distribution("time_constant_factor", ranges.time_constant_factor, positive,
-                        "factor of its time constants", "1"),
-      key::distribution("dead_time_factor", ranges.dead_time_factor, rule, "factor of its dead time", "1"),
+                        "factor of its time constants", "1")
+          .also(kNoLongMemory),
+      key::distribution("dead_time_factor", ranges.dead_time_factor, rule, "factor of its dead time", "1")
+          .also(kNoLongMemory),
       key::distribution("dead_time_shift", ranges.dead_time_shift, NumberRule::finite(),
-                        "added to its dead time; what comes out below 0 is 0", "time"),
+                        "added to its dead time; what comes out below 0 is 0", "time")
+          .also(kNoLongMemory),
       key::distribution("extra_lag", ranges.extra_lag, rule,
-                        "time constant of a further lag, over the residence time of the channel", "1"),
+                        "time constant of a further lag, over the residence time of the channel", "1")
+          .also(kNoLongMemory),
       key::distribution("noise_factor", ranges.noise_factor, rule,
                         "factor of the measurement noise of a CV, in the benchmark as well", "1"),
       key::whole(
@@ -130,6 +162,7 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
           .allow("one or more")
           .after(refuse_parameters),
       key::check(refuse_channels),
+      key::check([&ranges, &study](const TomlTable& world) { refuse_long_world(world, ranges, study); }),
       key::table(
           "background", [&ranges, &study] { return background_keys(ranges.background, study); },
           "disturbances that are always there: first-order noise of its own on every CV and every MV, other "

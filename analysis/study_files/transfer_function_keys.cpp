@@ -1,5 +1,6 @@
 #include "analysis/study_files/transfer_function_keys.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "base/non_finite.hpp"
 #include "plants/linear/in_series.hpp"
 #include "plants/linear/step_response_fit.hpp"
+#include "plants/linear/zero_order_hold.hpp"
 #include "scenarios/toml/toml_table.hpp"
 #include "scenarios/toml/toml_values.hpp"
 
@@ -171,6 +173,32 @@ void refuse_long_memory(const TomlTable& table, const std::string& key, const Tr
     table.refuse(table.has("step") ? "step" : "", fmt::format("coefficients over {}", memory), allowed);
   table.refuse(key, key.empty() ? fmt::format("a dead time of {}", dead_time) : fmt::format("{}", dead_time),
                allowed);
+}
+
+double largest_draw(const Distribution& draws) {
+  constexpr double kFarOut = 10.0;  // standard deviations
+  return draws.kind() == Distribution::Kind::normal ? draws.first() + kFarOut * draws.second()
+                                                    : draws.maximum();
+}
+
+void refuse_long_draws(const TomlTable& table, const std::string& key, const Distribution& draws,
+                       const TransferFunction& channel, const std::string& name, const LongestDraws& longest,
+                       double sample_time) {
+  const double dead_time = channel.dead_time();
+  const double shifted = std::max(0.0, longest.dead_time_factor * dead_time + longest.dead_time_shift);
+  double kept = shifted / sample_time;
+  if (const auto& step = channel.step_coefficients()) {
+    const double end = shifted + longest.time_factor * (step->end() - dead_time);
+    const double apart = longest.least_time_factor * step->interval();
+    kept =
+        std::max(kept, longest.lag > 0.0 ? (end + kTimesToSettle * longest.lag) / std::min(sample_time, apart)
+                                         : end / sample_time);
+  }
+  if (!(kept <= kMaxDelay))
+    table.refuse(key,
+                 fmt::format("draws up to {} ({} then looks back over {:.3g} samples)", largest_draw(draws),
+                             name, kept),
+                 fmt::format("draws with which no channel looks back over more than {}", kMaxDelay));
 }
 
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "plants/linear/transfer_function.hpp"
+#include "scenarios/random/distribution.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
@@ -37,5 +38,21 @@ void refuse_growing(const TomlTable& table, const TransferFunction& Gd);
 /// Refuses a dead time, which is that of `key`, and coefficients of more than kMaxDeadTimeSamples.
 void refuse_long_memory(const TomlTable& table, const std::string& key, const TransferFunction& channel,
                         double sample_time);
+
+/// The largest draws that change a channel.
+struct LongestDraws {
+  double time_factor = 1.0, least_time_factor = 1.0;
+  double dead_time_factor = 1.0, dead_time_shift = 0.0;
+  double lag = 0.0;  ///< time constant of a further lag
+};
+
+/// The largest draw; of a normal distribution, which has none, ten standard deviations above the mean.
+double largest_draw(const Distribution& draws);
+
+/// Refuses `draws` of `key` under which `channel`, called `name`, keeps more than kMaxDelay samples of its
+/// input or coefficients of its step response. `longest` has these draws and those that are drawn with them.
+void refuse_long_draws(const TomlTable& table, const std::string& key, const Distribution& draws,
+                       const TransferFunction& channel, const std::string& name, const LongestDraws& longest,
+                       double sample_time);
 
 }  // namespace mpm

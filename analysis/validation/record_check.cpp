@@ -71,6 +71,16 @@ bool is_constant(const RecordedVariable& variable) {
          ((values - values(0)).abs() <= kRoundingShare * std::max(width, std::abs(values(0)))).all();
 }
 
+void refuse_out_of_proportion(const RecordedVariable& variable) {
+  for (Eigen::Index k = 0; k < variable.values.size(); ++k)
+    if (const double value = variable.values(k); std::abs(value) > kLargestValue)
+      throw InputError(
+          fmt::format("record of {}", variable.name),
+          fmt::format("{:g} at sample {}, out of all proportion", value, k),
+          fmt::format("values up to {:g}: look at its unit (data.scale) and its quality (data.quality)",
+                      kLargestValue));
+}
+
 /// Does it look like an absolute value?
 bool is_far_off(const RecordedVariable& variable) {
   const Eigen::ArrayXd values = variable.present();
@@ -312,6 +322,8 @@ class ExchangeSearch {
 
 std::vector<std::string> check_record(const Study& study, const PlantRecord& record) {
   const std::vector<RecordedVariable> variables = variables_of(study, record);
+  for (const RecordedVariable& variable : variables)
+    refuse_out_of_proportion(variable);
   std::vector<std::string> warnings;
   check_movement(variables, warnings);
   check_absolute(study, variables, warnings);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
+#include "bench/execution/experiment_work.hpp"
 #include "bench/files/archive_input.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "results/text/experiment_heading.hpp"
@@ -40,6 +42,18 @@ Campaign with_known_methods(Campaign campaign) {
   return with_methods(std::move(campaign), kept, std::nullopt);
 }
 
+/// As a campaign runs it: an exception makes a record `failed` with its text.
+ExperimentRecord experiment_again(const Campaign& campaign, const BasisCase& basis,
+                                  const QpSolverFactory& factory, std::int64_t index, StorePolicy store) {
+  try {
+    return ExperimentRunner(campaign.study, basis, method_names(campaign), factory).run(index, store);
+  } catch (const std::exception& error) {
+    ExperimentRecord lost = lost_record(campaign.study, index, error.what());
+    lost.assessments = unassessed(forms_of(campaign));
+    return lost;
+  }
+}
+
 ExitCode replay(const ReplayArguments& options) {
   const Campaign campaign = with_known_methods(stream_input(options.archive));
   const ExperimentRecord archived = experiment_of(campaign, options.index);
@@ -47,10 +61,10 @@ ExitCode replay(const ReplayArguments& options) {
   // From (study, seed, index) alone: the basis case is made again too.
   const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
   const BasisCase basis = run_basis_case(campaign.study, factory);
-  const ExperimentRecord again = ExperimentRunner(campaign.study, basis, method_names(campaign), factory)
-                                     .run(options.index, archived.truth  ? StorePolicy::truth
-                                                         : archived.loop ? StorePolicy::all
-                                                                         : StorePolicy::none);
+  const ExperimentRecord again = experiment_again(campaign, basis, factory, options.index,
+                                                  archived.truth  ? StorePolicy::truth
+                                                  : archived.loop ? StorePolicy::all
+                                                                  : StorePolicy::none);
   const std::vector<std::string> differences =
       RecordBytes(campaign.study, forms_of(campaign)).differences(archived, again);
   print_result(fmt::format("experiment {}: {}, {}\n", options.index, to_string(again.draw.kind),

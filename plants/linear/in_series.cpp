@@ -2,14 +2,17 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "base/error.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "plants/linear/settling_time.hpp"
+#include "plants/linear/step_coefficients.hpp"
 #include "plants/linear/transfer_matrix.hpp"
+#include "plants/linear/zero_order_hold.hpp"
 
 namespace mpm {
 namespace {
-
-constexpr double kTimesToSettle = 21.0;  // sums of time constants: e^-21 = 1e-9
 
 /// The response of H(s), which has no coefficients, to S(t): exact at multiples of T, and long enough for H
 /// to settle. S' is constant between coefficients: H S' / s is that of a held input.
@@ -18,6 +21,9 @@ StepCoefficients response(const TransferFunction& H, const StepCoefficients& S) 
   const Eigen::VectorXd values = S.sampled(T);
   const Eigen::Index n = values.size();
   const double settled = H.dead_time() + kTimesToSettle * sum_of_time_constants(H);
+  if (!(S.end() + settled <= kMaxDelay * T))
+    throw InputError("coefficients of a step response behind a further lag",
+                     fmt::format("{:.3g}", (S.end() + settled) / T), fmt::format("at most {}", kMaxDelay));
   const Eigen::Index count = n + static_cast<Eigen::Index>(std::ceil(settled / T));
   Eigen::RowVectorXd slopes = Eigen::RowVectorXd::Constant(count + 1, S.rate());
   slopes.head(n) = values.transpose() / T;

@@ -6,6 +6,9 @@
 
 namespace mpm {
 
+/// Sums of its time constants after which a transfer function has settled: e^-21 = 1e-9.
+inline constexpr double kTimesToSettle = 21.0;
+
 /// A step response S(t) by its coefficients, as dynamic matrix control has it: S(0) = 0, S(T) = s_1, ...,
 /// S(n T) = s_n, straight lines in between. After the last coefficient it stays there, or, of a channel that
 /// integrates, goes on with the last slope, (s_n - s_(n-1)) / T.

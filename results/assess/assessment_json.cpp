@@ -118,9 +118,13 @@ Json of_mvs(const Study& study, const Eigen::VectorXd& numbers) {
 
 Json model_json(const RecordAssessment& of) {
   const bool is_known = of.model.answered();
+  Json unexplained = Json::array();
+  for (const UnexplainedCv& each : of.unexplained)
+    unexplained.push_back({{"cv", cv_name(of.study, each.cv)}, {"noise", each.noise}});
   return {{"error", of.model_error},
           {"score", is_known ? Json(of.model.score) : Json()},
           {"flagged", is_known ? Json(is_above(of.model, of.trial ? &of.trial->model : nullptr)) : Json()},
+          {"unexplained", std::move(unexplained)},
           {"trust", of.trial ? trust_json(of.trial->model) : Json()}};
 }
 

@@ -54,6 +54,16 @@ std::string flag_sentence(const RecordAssessment& of) {
   return fmt::format("Something is wrong with this loop, says {}{}.", name, costs_text(of));
 }
 
+void add_unexplained(const RecordAssessment& of, Texts& sentences) {
+  for (const UnexplainedCv& each : of.unexplained)
+    sentences.push_back(
+        fmt::format("The model does not explain {}: its noise is {:.2g} times that of the study, and the "
+                    "model leaves more "
+                    "than half of what it does. Look at its sensor, and at the noise of the study "
+                    "(simulation.noise_standard_deviation).",
+                    cv_name(of.study, each.cv), each.noise));
+}
+
 /// The mismatch without its size where the repair beside it identifies that again: one record, one number.
 NamedMismatch told_once(const RecordAssessment& of, NamedMismatch named) {
   if (of.repair && !of.repair->repair.named)
@@ -418,6 +428,7 @@ AssessmentText verdict_text(const RecordAssessment& of) {
                   "designed?",
                   of.study.plant.title, of.file));
   text.found.push_back(flag_sentence(of));
+  add_unexplained(of, text.found);
   if (of.found() == RecordVerdict::fault) {
     add_source(of, text.found);
     add_other_cvs(of, text.found);

@@ -13,7 +13,14 @@
 namespace mpm {
 namespace {
 
-/// The limits of an axis: what is set, and what is drawn with a margin where nothing is.
+/// Are the ends and ticks of this range different numbers as plot_number() writes them?
+bool is_wide(double lower, double upper) {
+  constexpr double kLeastShare = 1e-4;
+  return upper - lower > kLeastShare * std::max(std::abs(lower), std::abs(upper));
+}
+
+/// The limits of an axis: what is set, and what is drawn with a margin where nothing is, or where what is set
+/// leaves no room for it.
 std::pair<double, double> limits(const Axis& axis, double lower, double upper) {
   constexpr double kMargin = 0.05;
   if (lower > upper)  // nothing is drawn
@@ -23,11 +30,15 @@ std::pair<double, double> limits(const Axis& axis, double lower, double upper) {
     lower /= factor;
     upper *= factor;
   } else {
-    const double margin = upper > lower ? kMargin * (upper - lower) : std::max(0.5 * std::abs(upper), 0.1);
+    const double margin = is_wide(lower, upper)
+                              ? kMargin * (upper - lower)
+                              : std::max(0.5 * std::max(std::abs(lower), std::abs(upper)), 0.1);
     lower -= margin;
     upper += margin;
   }
-  return {std::isnan(axis.lower) ? lower : axis.lower, std::isnan(axis.upper) ? upper : axis.upper};
+  const double first = shows_value(axis, axis.lower) ? axis.lower : lower;
+  const double last = shows_value(axis, axis.upper) ? axis.upper : upper;
+  return is_wide(first, last) ? std::pair(first, last) : std::pair(lower, upper);
 }
 
 /// Ticks of a logarithmic axis: 1, 2, 5 in each decade, or the decades alone when these are many, or every
@@ -72,7 +83,8 @@ std::string tick_commands(char which, const Axis& axis, double lower, double upp
     places.push_back(fmt::format("{} {}", tick_word(axis.words[i]), i));
   for (const double tick :
        axis.logarithmic&& axis.ticks.empty() ? logarithmic_ticks(lower, upper) : axis.ticks)
-    places.push_back(plot_number(tick));
+    if (shows_value(axis, tick))
+      places.push_back(plot_number(tick));
   const double room = which == 'x' ? 42 : 28;  // numbers are wider than high
   if (places.empty())
     return fmt::format("set {}tics {}\n", which, plot_number(tick_step(lower, upper, length, room)));
@@ -83,7 +95,7 @@ std::string tick_commands(char which, const Axis& axis, double lower, double upp
 }  // namespace
 
 std::string plot_number(double value) {
-  return fmt::format("{:.6g}", value);
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN";
 }
 
 bool shows_value(const Axis& axis, double value) {

@@ -7,7 +7,8 @@
 
 namespace mpm {
 
-/// An axis of a panel. A limit that is NaN follows from what is drawn, with a margin.
+/// An axis of a panel. A limit that is NaN follows from what is drawn, with a margin; so do both where those
+/// that are set leave no room between them.
 struct Axis {
   std::string label;  ///< label, with the unit
   bool logarithmic = false;
@@ -17,7 +18,7 @@ struct Axis {
   std::vector<std::string> words = {};  ///< words at 0, 1, 2, ... in place of numbers
 };
 
-/// A number for gnuplot, with enough digits for any screen or printer.
+/// A number for gnuplot, with enough digits for any screen or printer; "NaN" of one that is not finite.
 std::string plot_number(double value);
 
 /// Whether the axis has a place for the value: it is finite, far enough from overflow for arithmetic with it,

@@ -239,6 +239,29 @@ def check_garbage(mistakes):
     mistakes.bench.run("assess", "m.toml", ".", code=2)
 
 
+def check_proportions(mistakes):
+    """Values that nothing can be computed with are refused by name; noise that no model explains is not explained."""
+    for value in (-1e160, 1e61, 1e300):
+        mistakes.refused(text_of(mistakes.changed(lambda k, r, v=value: r.update(xD=v * (-1) ** k))),
+                         "record of xD: found", "out of all proportion")
+    for name in ("R", "F"):
+        mistakes.refused(text_of(mistakes.changed(lambda k, r, n=name: r.update({n: 1e200 if k == 7 else r[n]}))),
+                         f"record of {name}: found 1e+200 at sample 7")
+    for value in (1e59, 1e-300):  # an answer, or a sentence, never a crash
+        odd = text_of(mistakes.changed(lambda k, r, v=value: r.update(xD=v * random.Random(k).gauss(0, 1))))
+        (mistakes.bench.folder / "m.csv").write_text(odd)
+        result = subprocess.run([mistakes.bench.program, "assess", "m.toml", "m.csv", "--trials", "0", "--quiet",
+                                 "--methods", "all"], capture_output=True, text=True, cwd=mistakes.bench.folder,
+                                timeout=120)
+        assert result.returncode in (0, 2) and (result.returncode == 0 or "found" in result.stderr), result
+    noise = mistakes.assess(text_of(mistakes.changed(lambda k, r: r.update(xD=random.Random(k).gauss(0, 0.5)))))
+    assert [each["cv"] for each in noise["model"]["unexplained"]] == ["xD"], noise["model"]
+    assert 40 < noise["model"]["unexplained"][0]["noise"] < 60, noise["model"]
+    assert noise["found"] not in ("other_controller", "unexplained_cost"), noise["verdict"]
+    assert any("does not explain xD" in sentence for sentence in noise["verdict"]), noise["verdict"]
+    assert mistakes.assess(text_of(mistakes.rows))["model"]["unexplained"] == []
+
+
 def check_limits(mistakes):
     rows = mistakes.changed(lambda k, r: r.update(lo=-0.5 if k >= 200 else 0.0, hi=1.0, sim=0.0))
     columns = [*COLUMNS, "lo", "hi", "sim"]
@@ -407,6 +430,7 @@ def main(program, study):
         check_times(mistakes, right)
         check_gaps(mistakes, right)
         check_garbage(mistakes)
+        check_proportions(mistakes)
         check_limits(mistakes)
         check_trust(bench, study)
         check_valve(bench, study)

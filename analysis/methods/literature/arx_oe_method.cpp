@@ -14,6 +14,7 @@
 #include "analysis/methods/literature/healthy_windows.hpp"
 #include "analysis/methods/literature/model_comparison.hpp"
 #include "analysis/methods/literature/prewhitened_groups.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/toml/number_rule.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -121,12 +122,11 @@ class ArxOe final : public AssessmentMethod {
       return Assessment::not_applicable(
           fmt::format("its models need {} samples or more, in the record and in the benchmark", fewest));
     Assessment assessment;
-    assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const CvAssessment said = !windows_.empty() && by_windows(loop) ? judge_windows(cv, loop, assessment)
                                                                       : judge_cv(cv, loop, assessment);
       assessment.flagged = assessment.flagged || *said.flagged;
-      assessment.score = std::max(assessment.score, said.score);
+      assessment.score = std::fmax(assessment.score, said.score);
       assessment.cvs.push_back(said);
     }
     return assessment;
@@ -162,7 +162,7 @@ class ArxOe final : public AssessmentMethod {
   CvAssessment judge_windows(Eigen::Index cv, const AssessedLoop& loop, Assessment& assessment) const {
     const HealthyWindows::Outside of =
         windows_[static_cast<std::size_t>(cv)].outside(plant_and_noise(cv, loop));
-    const double plant = std::max(0.0, 1.0 + of.plant), noise = std::max(0.0, 1.0 + of.noise);
+    const double plant = larger_or_nan(0.0, 1.0 + of.plant), noise = larger_or_nan(0.0, 1.0 + of.noise);
     assessment.numbers.push_back({"plant", plant, cv});
     assessment.numbers.push_back({"noise_model", noise, cv});
     return verdict(plant, noise);
@@ -170,7 +170,7 @@ class ArxOe final : public AssessmentMethod {
 
   static CvAssessment verdict(double plant, double noise) {
     const bool mpm = plant > 1.0, ud = noise > 1.0;
-    return {mpm || ud, std::max(plant, noise),
+    return {mpm || ud, larger_or_nan(plant, noise),
             mpm && ud ? FaultSource::mpm_ud
             : mpm     ? FaultSource::mpm
             : ud      ? FaultSource::ud
@@ -184,7 +184,7 @@ class ArxOe final : public AssessmentMethod {
     assessment.numbers.push_back({"plant", of.plant, cv});
     assessment.numbers.push_back({"noise_model", of.noise_model, cv});
     assessment.numbers.push_back({"noise_variance", of.noise_variance, cv});
-    return verdict(of.plant, std::max(of.noise_model, of.noise_variance));
+    return verdict(of.plant, larger_or_nan(of.noise_model, of.noise_variance));
   }
 
   PlantAndNoise plant_and_noise(Eigen::Index cv, const AssessedLoop& loop) const {

@@ -16,6 +16,7 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/loop_autocovariance.hpp"
 #include "analysis/methods/literature/mismatch_search.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -123,7 +124,6 @@ class Autocovariance final : public AssessmentMethod {
     const Eigen::VectorXd c = loop_autocovariance(control_errors(loop, loop.y), lags_);
     const Eigen::VectorXd left = c - theoretical_autocovariance(*linear_, theory_->moves, lags_, nullptr);
     Assessment assessment;
-    assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
       judge_cv(cv, left, assessment);
     if (assessment.flagged)
@@ -210,7 +210,7 @@ class Autocovariance final : public AssessmentMethod {
     assessment.cvs.push_back({flagged, score, FaultSource::none});
     assessment.numbers.push_back({"chi2", chi2, cv});
     assessment.flagged = assessment.flagged || flagged;
-    assessment.score = std::max(assessment.score, score);
+    assessment.score = std::fmax(assessment.score, score);
   }
 
   Eigen::VectorXd mean_of(const GriddedFamily& family, double x) const {
@@ -301,7 +301,8 @@ class Autocovariance final : public AssessmentMethod {
     fits.resize(std::min(fits.size(), kRefined));
     for (FittedFamily& fit : fits)
       fit = refined(fit, kSecondStep * grid_step(fit), c, distance);
-    return *std::min_element(fits.begin(), fits.end(), nearer);
+    return *required_best_of("distances of the mismatches of a loop", fits,
+                             [](const FittedFamily& fit) { return -fit.distance; });
   }
 
   void explain(const Eigen::VectorXd& c, Assessment& assessment) {

@@ -7,6 +7,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/badwe2009.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
@@ -107,15 +108,13 @@ class Badwe2009 final : public AssessmentMethod {
 
   static Assessment assessment_of(const Badwe2009Result& result, Eigen::Index ny, Eigen::Index nu) {
     Assessment assessment;
-    assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < ny; ++cv) {
       bool flagged = false;
       double largest = 0.0;
       for (Eigen::Index mv = 0; mv < nu; ++mv) {
         const ChannelAssessment& channel = result.channel(cv, mv);
         const double strength = std::abs(channel.correlation.peak) / channel.correlation.band;
-        if (strength > largest)
-          largest = strength;
+        largest = larger_or_nan(largest, strength);
         flagged = flagged || channel.mismatch;
         if (channel.mismatch)
           assessment.flagged_channels.push_back({cv, mv});
@@ -124,7 +123,7 @@ class Badwe2009 final : public AssessmentMethod {
       }
       assessment.cvs.push_back({flagged, largest, FaultSource::none});
       assessment.flagged = assessment.flagged || flagged;
-      assessment.score = std::max(assessment.score, largest);
+      assessment.score = std::fmax(assessment.score, largest);
     }
     return assessment;
   }

@@ -30,6 +30,8 @@ Eigen::VectorXd standard_deviations(const Eigen::MatrixXd& R, const Eigen::Matri
 }
 
 double exceeded_by_share(std::vector<double> values, double share) {
+  if (std::any_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+    return kNaN;
   std::sort(values.begin(), values.end(), std::greater<>());
   const auto place = static_cast<std::size_t>(share * static_cast<double>(values.size()));
   return values[std::min(place, values.size() - 1)];

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/identification/nested_least_squares.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "base/error.hpp"
 
@@ -121,7 +122,8 @@ void fit_cvs(const std::vector<Eigen::Index>& cvs, const LagRegressors& regresso
     const std::vector<double> score =
         beginning ? validation_losses(regressors, targets, side, *beginning, n - estimation, options)
                   : scores(regressors, targets, side, fit, options);
-    const auto best = std::min_element(score.begin(), score.end()) - score.begin();
+    const auto best =
+        required_best_of("criteria of high-order ARX models", score, std::negate<>()) - score.begin();
     const Eigen::Index order = options.orders[static_cast<std::size_t>(best)];
     const Eigen::Index columns = regressors.columns(order);
     result.orders[static_cast<std::size_t>(cvs[c])] = order;

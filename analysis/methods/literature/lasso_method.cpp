@@ -12,6 +12,7 @@
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/literature/mismatch_profile.hpp"
 #include "analysis/methods/literature/prewhitened_groups.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -102,7 +103,7 @@ LassoCv lasso_of(const Eigen::VectorXd& e, const Groups& filters, double probabi
   }
   for (double& ratio : result.ratios) {
     ratio = std::min(ratio, 1.0);
-    result.score = std::max(result.score, ratio);
+    result.score = larger_or_nan(result.score, ratio);
   }
   return result;
 }
@@ -129,18 +130,17 @@ class Lasso final : public AssessmentMethod {
       return Assessment::not_applicable(fmt::format("its regressions need {} samples or more", fewest));
     const double probability = kLassoFalseAlarms / static_cast<double>(inputs.rows() * loop.y.rows());
     Assessment assessment;
-    assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const Eigen::VectorXd e = (loop.y.row(cv) - loop.y_sim.row(cv)).transpose();
       const Groups filters = filters_of(cv, inputs, loop.samples());
       LassoCv found = lasso_of(e, filters, probability);
       const std::optional<NamedMismatch> surest = surest_mismatch(cv, found, e, filters, inputs);
-      if (!found.named.empty() && found.score > assessment.score)
+      if (!found.named.empty() && !(found.score <= assessment.score))
         assessment.named_mismatch = surest;
       assessment.cvs.push_back(
           {!found.named.empty(), found.score, found.named.empty() ? FaultSource::none : FaultSource::mpm});
       assessment.flagged = assessment.flagged || !found.named.empty();
-      assessment.score = std::max(assessment.score, found.score);
+      assessment.score = std::fmax(assessment.score, found.score);
       add_channels(cv, found, assessment);
     }
     return assessment;

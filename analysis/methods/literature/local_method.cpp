@@ -68,7 +68,6 @@ class Local final : public AssessmentMethod {
         loop.samples() < fewest)
       return Assessment::not_applicable(fmt::format("its regressions need {} samples or more", fewest));
     Assessment assessment;
-    assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
       judge_cv(cv, (loop.y.row(cv) - loop.y_sim.row(cv)).transpose(), inputs, assessment);
     return assessment;
@@ -92,9 +91,9 @@ class Local final : public AssessmentMethod {
       for (Eigen::Index k = 0; k < gradients[static_cast<std::size_t>(mv)].cols(); ++k)
         assessment.numbers.push_back({kNames[static_cast<std::size_t>(k)],
                                       local_parameter(groups, static_cast<std::size_t>(mv), k).z, cv, mv});
-    const bool worst = score > assessment.score;
+    const bool worst = !(score <= assessment.score);
     assessment.flagged = assessment.flagged || flagged;
-    assessment.score = std::max(assessment.score, score);
+    assessment.score = std::fmax(assessment.score, score);
     if (flagged)
       name_channels(cv, groups, worst, assessment);
   }

@@ -8,6 +8,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/variability_comparison.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "base/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
@@ -84,7 +85,7 @@ class YuQin final : public AssessmentMethod {
     Assessment assessment;
     assessment.score = 0.0;
     for (const VariabilityDirection& direction : found.directions)
-      assessment.score = std::max(assessment.score, direction.limits.lower);
+      assessment.score = larger_or_nan(assessment.score, direction.limits.lower);
     assessment.flagged = assessment.score > 1.0;
     assessment.numbers = {{"i_v", found.i_v},
                           {"mu_max", found.directions.front().mu},

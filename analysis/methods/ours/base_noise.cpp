@@ -114,6 +114,7 @@ struct VarianceFit {
 VarianceFit fitted_variance(const WhitenedProducts& sums, Eigen::Index model, Eigen::Index q, double n,
                             double least) {
   const double squares = sums.of(0, 0)(model);
+  Eigen::ArrayXd values(q), along(q);
   Eigen::MatrixXd inner(q, q);
   Eigen::VectorXd with_e(q);
   for (Eigen::Index i = 0; i < q; ++i) {
@@ -121,9 +122,11 @@ VarianceFit fitted_variance(const WhitenedProducts& sums, Eigen::Index model, Ei
     for (Eigen::Index j = 0; j < q; ++j)
       inner(i, j) = sums.of(1 + i, 1 + j)(model);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner);
-  const Eigen::ArrayXd values = eigen.eigenvalues().array().max(0.0);
-  const Eigen::ArrayXd along = (eigen.eigenvectors().transpose() * with_e).array().square();
+  if (q > 0) {  // Eigen reads the largest element of an empty matrix
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inner);
+    values = eigen.eigenvalues().array().max(0.0);
+    along = (eigen.eigenvectors().transpose() * with_e).array().square();
+  }
   const auto log_likelihood = [&](double log_variance) {
     const double s2 = std::exp(log_variance);
     return -0.5 * (sums.log_determinant(model) + n * log_variance + (values / s2).log1p().sum() +
@@ -211,6 +214,8 @@ NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
   for (const PossibleNoises& each : noise.possible)
     for (const double log_weight : each.log_weight)
       total = log_sum(total, log_weight);
+  if (!std::isfinite(total))
+    throw InputError("likelihoods of the noise of a CV", fmt::format("a sum of e^{}", total), "a number");
   noise.log_evidence = total;
   for (PossibleNoises& each : noise.possible) {
     std::vector<Eigen::Index> kept;

@@ -55,8 +55,9 @@ double slow_part(const BaseNoise& noise);
 /// goes to each AR(1) state up to kLargestBackground, since a background may be another one next month.
 void add_unseen_backgrounds(NoisePosterior& noise, Eigen::Index samples);
 
-/// For simulation errors of which the rows of `directions` (q x N, q > 0, CV unit) explain a part with
-/// coefficients z ~ N(0, I), which are integrated out.
+/// For simulation errors of which the rows of `directions` (q x N, CV unit) explain a part with coefficients
+/// z ~ N(0, I), which are integrated out. Throws InputError as fitted_base_noise(), and where no likelihood
+/// of a noise is a number.
 NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
                                const Eigen::Ref<const Eigen::MatrixXd>& directions, double least);
 

@@ -66,9 +66,8 @@ Assessment CounterfactualLoop::impact(const AssessedLoop& loop) {
     if (const std::optional<Eigen::VectorXd> under_noise = indices_under_noise(loop))
       ivar = *under_noise;
   Assessment assessment;
-  assessment.score = 0.0;
   for (Eigen::Index cv = 0; cv < ivar.size(); ++cv) {
-    assessment.score = std::max(assessment.score, distance(ivar(cv), cv));
+    assessment.score = std::fmax(assessment.score, distance(ivar(cv), cv));
     assessment.flagged = assessment.flagged || has_impact(ivar(cv), cv);
     assessment.numbers.push_back({"ivar", ivar(cv), cv});
   }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "analysis/methods/ours/growing_mismatch.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -373,9 +373,7 @@ class RecordLikelihood {
     std::vector<double> fits;
     for (const MismatchEvidence& each : first)
       fits.push_back(each.best_log_likelihood);
-    const auto strongest = std::max_element(
-        so_far.mismatch_alone.begin(), so_far.mismatch_alone.end(),
-        [](const auto& a, const auto& b) { return a.best_log_likelihood < b.best_log_likelihood; });
+    const auto strongest = best_of(so_far.mismatch_alone, &MismatchEvidence::best_log_likelihood);
     if (strongest != so_far.mismatch_alone.end() &&
         strongest->best_log_likelihood > so_far.healthy + kFaint) {
       const auto place = static_cast<std::size_t>(strongest - so_far.mismatch_alone.begin());
@@ -396,8 +394,10 @@ class RecordLikelihood {
         fits[i] = alone.best_log_likelihood;
         all[i].best_size = alone.best_size;
       }
-    std::vector<std::size_t> order(all.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < fits.size(); ++i)
+      if (!std::isnan(fits[i]))
+        order.push_back(i);
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return fits[a] > fits[b]; });
     std::size_t looks = 0;
     for (const std::size_t i : order) {

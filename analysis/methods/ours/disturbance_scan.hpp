@@ -31,6 +31,7 @@ struct WeighedModels {
   Eigen::ArrayXd log_prior;       ///< of the cell of each model
   Eigen::ArrayXd log_likelihood;  ///< of the series that was looked at
 
+  // All but the first and the last throw InputError where no likelihood is a number above -infinity.
   Eigen::ArrayXd log_posterior() const { return log_prior + log_likelihood; }
   Eigen::Index best() const;  ///< with the largest likelihood
   /// log of the sum of the posterior: the evidence.

@@ -9,6 +9,7 @@
 #include "analysis/methods/ours/input_disturbance.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/sticky_valve_likelihood.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
@@ -189,12 +190,6 @@ bool draws_known_faults(const Study& study) {
   return study.experiments.mpm + study.experiments.ud + study.experiments.mpm_ud > 0;
 }
 
-/// Samples may be missing, but what is there must be a number.
-void require_numbers(const AssessedLoop& loop) {
-  if (!model_inputs(loop.from_start()).allFinite() || !loop.y_sim.allFinite() || loop.y.array().isInf().any())
-    throw InputError("record of the loop", "a value that is not finite", "finite values, or missing CVs");
-}
-
 class FaultPosterior final : public AssessmentMethod {
  public:
   FaultPosterior(const AssessmentContext& context, FaultPriors priors)
@@ -221,7 +216,6 @@ class FaultPosterior final : public AssessmentMethod {
   }
 
   Assessment assess(const AssessedLoop& loop) override {
-    require_numbers(loop);
     const Eigen::MatrixXd inputs = model_inputs(loop.from_start());
     std::vector<CvEvidence> evidence;
     std::vector<Eigen::RowVectorXd> errors;
@@ -385,9 +379,8 @@ class FaultPosterior final : public AssessmentMethod {
     if (!assessment.flagged || (source != FaultSource::mpm && source != FaultSource::mpm_ud))
       return;
     const auto& mismatches = mismatches_of_source(evidence, source);
-    const auto likeliest =
-        std::max_element(mismatches.begin(), mismatches.end(),
-                         [](const auto& a, const auto& b) { return a.log_evidence < b.log_evidence; });
+    const auto likeliest = required_best_of("likelihoods of the mismatches of a CV", mismatches,
+                                            &MismatchEvidence::log_evidence);
     const SizePrior& named =
         priors_.cvs[cv].mismatches[static_cast<std::size_t>(likeliest - mismatches.begin())];
     assessment.flagged_channels.push_back(named.channel);

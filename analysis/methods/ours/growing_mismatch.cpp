@@ -85,7 +85,8 @@ class GrowingSearch {
   std::vector<GrowingMismatch> run() const {
     std::vector<Start> starts;
     for (std::size_t i = 0; i < responses_.size(); ++i)
-      starts.push_back(best_of_grid(i));
+      if (const Start start = best_of_grid(i); !std::isnan(start.explained))
+        starts.push_back(start);
     std::sort(starts.begin(), starts.end(),
               [](const Start& a, const Start& b) { return a.explained > b.explained; });
     std::vector<GrowingMismatch> found;

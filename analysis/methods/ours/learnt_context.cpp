@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/error.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/historian.hpp"
@@ -21,15 +22,19 @@ bool learns_from(const AssessedLoop& benchmark) {
 
 }  // namespace
 
-std::shared_ptr<const LearntModel> learnt_model(const Study& study, const OperatingPoint& point,
-                                                const AssessedLoop& benchmark) {
-  const AssessmentOptions& options = study.assessment;
+void learn_model(const AssessedLoop& benchmark, AssessmentContext& context) {
+  const AssessmentOptions& options = context.study.assessment;
   const bool learns = options.model == AssessmentModel::automatic
-                          ? study.world.has_value()
+                          ? context.study.world.has_value()
                           : options.model == AssessmentModel::benchmark;
-  if (!learns || !learns_from(benchmark))
-    return nullptr;
-  return std::make_shared<const LearntModel>(study, point.u, benchmark, options.model_error, options.bias);
+  if (!learns || !learns_from(benchmark) || out_of_proportion(context.study, benchmark))
+    return;
+  try {
+    context.correction = std::make_shared<const LearntModel>(context.study, context.basis.point.u, benchmark,
+                                                             options.model_error, options.bias);
+  } catch (const InputError& error) {
+    context.not_learnt = error.what();
+  }
 }
 
 std::shared_ptr<const LearntModel> learnt_model(const AssessmentContext& context) {
@@ -42,7 +47,7 @@ AssessmentContext assessment_context(const Study& study, const BasisCase& basis,
                             assessed_loop(study, basis.point, recorded(study, index, basis.trajectory))};
   if (study.simulation.excitation == SignalSequence::each)
     context.benchmark_study = std::make_shared<const Study>(with_excitation(study, index));
-  context.correction = learnt_model(study, basis.point, *context.benchmark);
+  learn_model(*context.benchmark, context);
   return context;
 }
 

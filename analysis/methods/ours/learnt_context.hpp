@@ -13,12 +13,12 @@
 
 namespace mpm {
 
-/// What the benchmark shows of the errors of the model, where the study wants it (AssessmentModel); null
-/// where it does not, or the benchmark has too few samples of a CV or lacks some of an input.
-std::shared_ptr<const LearntModel> learnt_model(const Study& study, const OperatingPoint& point,
-                                                const AssessedLoop& benchmark);
+/// Puts what `benchmark` shows of the errors of the model into the context, where its study wants that
+/// (AssessmentModel); nothing where it does not, or the benchmark has too few samples of a CV or lacks some
+/// of an input. Where the likelihood of what it shows has no number, `not_learnt` says so.
+void learn_model(const AssessedLoop& benchmark, AssessmentContext& context);
 
-/// The same of a context; null where nothing was learnt.
+/// What was learnt; null where nothing was.
 std::shared_ptr<const LearntModel> learnt_model(const AssessmentContext& context);
 
 /// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault;

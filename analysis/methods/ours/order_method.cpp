@@ -9,6 +9,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/shared/error_regression.hpp"
+#include "analysis/statistics/best_of.hpp"
 #include "analysis/statistics/holm.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
@@ -82,7 +83,7 @@ class Order final : public AssessmentMethod {
       if (of_noise > limit && !*said.flagged)
         said.source = FaultSource::ud;
       said.flagged = *said.flagged || of_noise > limit;
-      said.score = std::max(of_model, of_noise);
+      said.score = larger_or_nan(of_model, of_noise);
     }
     if (said.source == FaultSource::mpm)
       add_channels(cv, found.test.groups, assessment);
@@ -117,10 +118,7 @@ class Order final : public AssessmentMethod {
     for (const FTest& group : groups)
       p.push_back(std::exp(group.log_p));
     const std::vector<double> adjusted = holm_adjusted(p);
-    const auto strongest =
-        std::min_element(groups.begin(), groups.end(),
-                         [](const FTest& a, const FTest& b) { return a.log_p < b.log_p; }) -
-        groups.begin();
+    const auto strongest = best_of(groups, [](const FTest& group) { return -group.log_p; }) - groups.begin();
     for (std::size_t mv = 0; mv < p.size(); ++mv)
       if (static_cast<std::ptrdiff_t>(mv) == strongest || adjusted[mv] <= options_.regression.alpha)
         assessment.flagged_channels.push_back({cv, static_cast<Eigen::Index>(mv)});

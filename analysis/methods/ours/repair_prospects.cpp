@@ -151,9 +151,10 @@ void RepairProspects::run(const Seen& seen, std::vector<RepairProspect>& prospec
       TransferMatrix repaired = study_.plant.G;
       repaired(repair.channel.cv, repair.channel.mv) = repair.model;
       const std::optional<Outcome> then = outcome(repaired, plant, seen.whole.d, left);
-      if (!then)
+      const double gain = then ? (now->cost - then->cost) / now->cost : kNaN;
+      if (!std::isfinite(gain))
         continue;
-      prospects[i].gains.push_back((now->cost - then->cost) / now->cost);
+      prospects[i].gains.push_back(gain);
       before[i] += now->variances;
       after[i] += then->variances;
     }

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -59,14 +59,15 @@ class Botelho final : public AssessmentMethod {
     const Diagnosis diagnosis = chain.diagnose(y, nominal);
     Assessment assessment;
     assessment.flagged = diagnosis.impactful;
-    assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < diagnosis.ivar.size(); ++cv) {
-      assessment.score = std::max(assessment.score, distance(diagnosis.ivar(cv)));
+      assessment.score = std::fmax(assessment.score, distance(diagnosis.ivar(cv)));
       const bool flagged = options_.has_impact(diagnosis.ivar_diag(cv));
       const FaultSource source = cv == diagnosis.predicted_cv ? diagnosis.predicted_source
                                  : flagged ? chain.source_of(chain.indicator_of(cv, y, nominal))
                                            : FaultSource::none;
-      assessment.cvs.push_back({flagged, distance(diagnosis.ivar_diag(cv)), source});
+      const double away = distance(diagnosis.ivar_diag(cv));
+      // Nothing is said of a CV that stands still.
+      assessment.cvs.push_back({std::isnan(away) ? std::nullopt : std::optional(flagged), away, source});
     }
     assessment.numbers = chain_numbers(diagnosis);
     return assessment;

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "analysis/indicators/simulation_error.hpp"
@@ -67,7 +67,6 @@ class SimulationErrorMonitor final : public AssessmentMethod {
     const Eigen::VectorXd sse = simulation_errors(y, loop.y_sim);
     const Eigen::VectorXd squares = mean_squared_errors(loop, y, sse);
     Assessment assessment;
-    assessment.score = 0.0;
     assessment.numbers.push_back({"tsse", sse.sum()});
     for (Eigen::Index cv = 0; cv < squares.size(); ++cv) {
       const bool exact = squares(cv) == 0.0 && benchmark_(cv) == 0.0;
@@ -75,7 +74,7 @@ class SimulationErrorMonitor final : public AssessmentMethod {
       const bool flagged = ratio > threshold_;
       assessment.cvs.push_back({flagged, ratio});
       assessment.flagged = assessment.flagged || flagged;
-      assessment.score = std::max(assessment.score, ratio);
+      assessment.score = std::fmax(assessment.score, ratio);
       assessment.numbers.push_back({"sse", sse(cv), cv});
       assessment.numbers.push_back({"ratio", ratio, cv});
     }

@@ -40,7 +40,6 @@ class VarianceRatio final : public AssessmentMethod {
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::VectorXd found = cv_variances(study_, loop);
     Assessment assessment;
-    assessment.score = 0.0;
     for (Eigen::Index cv = 0; cv < found.size(); ++cv) {
       const double ratio = variance_ratio(found(cv), benchmark_(cv));
       assessment.numbers.push_back({"ratio", ratio, cv});
@@ -50,7 +49,7 @@ class VarianceRatio final : public AssessmentMethod {
       of_cv = {study_.diagnosis.has_impact(ratio),
                distance_from_one(ratio, study_.diagnosis.location_distance)};
       assessment.flagged = assessment.flagged || *of_cv.flagged;
-      assessment.score = std::max(assessment.score, of_cv.score);
+      assessment.score = std::fmax(assessment.score, of_cv.score);
     }
     return assessment;
   }

@@ -231,6 +231,52 @@ TEST_CASE("the options of the diagnosis and of the aggregates are checked", "[st
   });
 }
 
+TEST_CASE("what a study costs in memory has bounds that name their key", "[study_file]") {
+  const std::string allowed = "; allowed: draws with which no channel looks back over more than 1000000";
+  check_refusals({
+      {"", "\n[world]\ndead_time_factor = {log_uniform = [1, 1e6]}\n", "dead_time_factor",
+       "world.dead_time_factor: found draws up to 1000000 (level/hot then looks back over 3e+06 samples)" +
+           allowed},
+      {"", "\n[world]\ndead_time_shift = {normal = [0, 1e6]}\n", "dead_time_shift",
+       "world.dead_time_shift: found draws up to 10000000 (level/hot then looks back over 1e+07 samples)" +
+           allowed},
+      {"", "\n[mismatch]\ndead_time_shift = {uniform = [0, 2e6]}\n", "dead_time_shift",
+       "mismatch.dead_time_shift: found draws up to 2000000 (level/hot then looks back over 2e+06 samples)" +
+           allowed},
+      {"slack_weight = 9", "slack_weight = 9\nanalyser_delay = 60", "[controller]",
+       "controller.cv.heat.analyser_delay: found 60 samples; allowed: fewer than the 60 of the record "
+       "(simulation.samples), which ends before the first analysis is there"},
+  });
+  // A further lag behind coefficients of a step response has coefficients until it has settled.
+  const std::string coefficients =
+      replaced(small_study(), "gain = 2\ntime_constant = 10\ndead_time = 3",
+               "step = [0.2, 0.8, 1.3, 1.6, 1.8, 1.9, 1.95, 1.98, 1.99, 2.0]\nstep_interval = 1");
+  CHECK(refusal(coefficients + "\n[world]\nextra_lag = {log_uniform = [1e-6, 1]}\n") == "accepted");
+  for (const char* draws : {"[world]\nextra_lag = {log_uniform = [1e-6, 1e6]}",
+                            "[world]\ntime_constant_factor = {log_uniform = [1, 1e6]}",
+                            "[world]\ntime_constant_factor = {log_uniform = [1e-6, 1]}\n"
+                            "extra_lag = {uniform = [0, 1]}",
+                            "[mismatch]\ntime_constant_factor = {log_uniform = [1, 1e6]}",
+                            "[mismatch]\nparameter_weights = {gain = 1, time_constant = 1, dead_time = 1, "
+                            "second_order = 1}\nsecond_order = {log_uniform = [1, 1e6]}"}) {
+    INFO(draws);
+    CHECK(refusal(coefficients + "\n" + draws + "\n").find(allowed) != std::string::npos);
+  }
+  std::string many = replaced(replaced(small_study(), "prediction_horizon = 20", "prediction_horizon = 2000"),
+                              "control_horizon = 5", "control_horizon = 2000");
+  for (int i = 0; i < 20; ++i) {
+    const std::string name = "m" + std::to_string(i);
+    many =
+        replaced(many, "[[plant.md]]", "[[plant.mv]]\nname = \"" + name + "\"\nunit = \"1\"\n\n[[plant.md]]");
+    many += "\n[controller.mv." + name + "]\nmove_suppression = 1\nhard = [-1, 1]\n";
+  }
+  CHECK(refusal(many) ==
+        "s.toml:" + std::to_string(line_of(many, "control_horizon")) +
+            ": controller.control_horizon: found 2000 (44000 moves and 4000 predicted outputs); "
+            "allowed: at most 243 with this plant and prediction horizon: a quadratic program of "
+            "5e+07 numbers");
+}
+
 }  // namespace
 TEST_CASE("faults beyond one parameter and white noise are checked", "[study_file]") {
   check_refusals({

@@ -22,6 +22,7 @@
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_report.hpp"
 #include "results/plot/figure_drawing.hpp"
+#include "results/plot/plot_text.hpp"
 #include "results/report/change_report.hpp"
 #include "results/report/report.hpp"
 #include "results/suite/board_columns.hpp"

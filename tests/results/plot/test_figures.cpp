@@ -152,6 +152,28 @@ TEST_CASE("figures: a panel without data, with one point, and on logarithmic axe
   CHECK_THAT(svg, Contains("<title>shown</title>") && !Contains("zero") && !Contains("negative"));
 }
 
+TEST_CASE("figures: whatever numbers a panel gets, it can be drawn") {
+  const std::vector<double> odd{0.0,   1.0,    1.0 + 1e-9, 1.0 - 1e-12, 1e9,      1e9 + 1e-3, -1e99, 1e99,
+                                1e-99, 1e-308, 1e308,      NAN,         INFINITY, -INFINITY,  -0.0,  -5.0};
+  std::vector<Panel> panels;
+  for (const bool logarithmic : {false, true})
+    for (const double one : odd)
+      for (const double other : odd) {
+        PanelScript panel("p", "", {.label = "x", .logarithmic = logarithmic, .lower = one, .upper = other},
+                          {.label = "y", .logarithmic = logarithmic, .ticks = {one, other}});
+        panel.line({one, other}, {other, one}, {});
+        panel.points({{one, other, "a point"}}, {colour::kBlue, Dash::none, Mark::dot});
+        panel.upright_whiskers({{one, other, one, other, "a mean"}},
+                               {colour::kGreen, Dash::solid, Mark::dot});
+        panel.across(one, {});
+        panel.upright(other, {});
+        panel.upright_band(one, other);
+        panel.field(0.0, 0.0, colour::kSky, other, "field");
+        panels.push_back(panel.finish("odd"));
+      }
+  CHECK(drawn(panels).size() == panels.size());
+}
+
 TEST_CASE("figures: a heat map with foreign names on its axes") {
   const std::string awkward = as_label("100 %d `x` 'y' {_^");
   PanelScript map("a", "", {.label = "", .words = {"one", awkward}},

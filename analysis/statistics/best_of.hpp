@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/non_finite.hpp"
+
+// Choices among candidates by a number that may not be one. Every choice of the analysis is made here, so
+// that none points at nothing.
+
+namespace mpm {
+
+/// The place of the candidate with the largest `value`, of several the first: an iterator into `candidates`.
+/// NaN and -infinity make no candidate; the end where none is left. For the smallest value negate it.
+template <class Candidates, class Value = std::identity>
+auto best_of(const Candidates& candidates, Value value = {}) {
+  const auto end = std::end(candidates);
+  auto best = end;
+  double largest = -kInfinity;
+  for (auto each = std::begin(candidates); each != end; ++each)
+    if (const auto found = static_cast<double>(std::invoke(value, *each)); found > largest) {
+      largest = found;
+      best = each;
+    }
+  return best;
+}
+
+/// The same where the answer needs one. Throws InputError, by the name of the values, where no candidate is
+/// left.
+template <class Candidates, class Value = std::identity>
+auto required_best_of(const std::string& values, const Candidates& candidates, Value value = {}) {
+  const auto best = best_of(candidates, value);
+  if (best == std::end(candidates))
+    throw InputError(values, "no number", "one or more");
+  return best;
+}
+
+/// The larger one; NaN where one of them is.
+inline double larger_or_nan(double a, double b) {
+  return a >= b || std::isnan(a) ? a : b;
+}
+
+}  // namespace mpm
