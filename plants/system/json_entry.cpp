@@ -17,7 +17,7 @@ constexpr double kLargestNumber = std::numeric_limits<double>::max();
 
 std::string number_range_text(double least, double most) {
   return most == kLargestNumber ? fmt::format("a number from {:g} on", least)
-                          : fmt::format("a number from {:g} to {:g}", least, most);
+                                : fmt::format("a number from {:g} to {:g}", least, most);
 }
 
 }  // namespace
@@ -35,14 +35,16 @@ void JsonEntry::require_keys(const std::vector<std::string>& known) const {
   require(value_.is_object(), "an object");
   for (const auto& item : value_.items())
     if (std::find(known.begin(), known.end(), item.key()) == known.end())
-      throw InputError(place_, fmt::format("the unknown key '{}'", foreign_text(item.key(), kShownOfJsonEntry)),
+      throw InputError(place_,
+                       fmt::format("the unknown key '{}'", foreign_text(item.key(), kShownOfJsonEntry)),
                        fmt::format("{}", fmt::join(known, ", ")));
 }
 
 JsonEntry JsonEntry::at(const std::string& key) const {
   require(value_.is_object(), fmt::format("an object with '{}'", foreign_text(key, kShownOfJsonEntry)));
   if (!value_.contains(key))
-    throw InputError(place_, fmt::format("no '{}'", foreign_text(key, kShownOfJsonEntry)), "an object with it");
+    throw InputError(place_, fmt::format("no '{}'", foreign_text(key, kShownOfJsonEntry)),
+                     "an object with it");
   return {value_.at(key), fmt::format("{}: {}", place_, foreign_text(key, kShownOfJsonEntry))};
 }
 
@@ -98,7 +100,8 @@ std::int64_t JsonEntry::whole(std::int64_t least, std::int64_t most) const {
 double JsonEntry::number(double least, double most) const {
   const double number = value_.is_number() ? value_.get<double>() : std::nan("");
   require(std::isfinite(number) && number >= least && number <= most,
-          least == -kLargestNumber && most == kLargestNumber ? "a finite number" : number_range_text(least, most));
+          least == -kLargestNumber && most == kLargestNumber ? "a finite number"
+                                                             : number_range_text(least, most));
   return number;
 }
 

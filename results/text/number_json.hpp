@@ -9,7 +9,8 @@
 
 namespace mpm {
 
-// How JSON of the program is written, and how numbers with an uncertainty stand in it; NaN and infinity are null.
+// How JSON of the program is written, and how numbers with an uncertainty stand in it; NaN and infinity are
+// null.
 
 /// JSON as it is written. Texts of others may hold bytes that are no UTF-8: U+FFFD stands there.
 inline std::string json_text(const nlohmann::ordered_json& json, int indent = 2) {

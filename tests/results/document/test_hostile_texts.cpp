@@ -1,11 +1,11 @@
 // What others write reaches every writer: names and texts of studies, archives, boards, methods and files.
 // Each writer gets texts that would be markup, macros, formulas or further lines in what it writes.
 
-#include <cctype>
 #include <charconv>
+#include <memory>
 #include <regex>
-#include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -22,6 +22,7 @@
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_report.hpp"
 #include "results/plot/figure_drawing.hpp"
+#include "results/plot/plot_text.hpp"
 #include "results/report/change_report.hpp"
 #include "results/report/report.hpp"
 #include "results/suite/board_columns.hpp"

@@ -94,8 +94,8 @@ TEST_CASE("board gates: without worlds the cells are the clusters of the test", 
   };
   const FinishedBoard better = two_cells(25, 25);
   const GateCheck check = judged({suite, two_cells(20, 25)}, "[baseline]\narchive = \"old\"\n", &better);
-  // All five are lost in one of two cells: t = 1 with one degree of freedom, where 1/32 of single loops is p. Their
-  // CVs and sources are lost as well: one of three questions.
+  // All five are lost in one of two cells: t = 1 with one degree of freedom, where 1/32 of single loops is p.
+  // Their CVs and sources are lost as well: one of three questions.
   for (const GateResult& result : check.results)
     if (result.gate.name == "baseline.mine.detected.p_worse")
       CHECK(result.measured.value == Approx(3 * 0.25));
