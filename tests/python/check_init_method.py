@@ -64,7 +64,7 @@ def check_refusals(folder, octave):
                           ("sse.py", "FILE: found the name of the method sse; allowed: a name that is not one of"),
                           ("numpy.py", "FILE: found 'numpy', the name of a module of Python"),
                           ("statistics.py", "FILE: found 'statistics', the name of a module of Python"),
-                          ("mpmbench.py", "FILE: found 'mpmbench', the name of a module of Python"),
+                          ("mpmbench.py", "FILE: found the name of the method mpmbench"),
                           ("all.py", "FILE: found 'all'; allowed: a name of 1 to 64 letters"),
                           ("-x.m", "FILE: found '-x'; allowed: a name of 1 to 64 letters"),
                           *([("mean.m", "FILE: found 'mean', the name of a function of Octave")] if octave else []),

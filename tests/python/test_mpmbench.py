@@ -1,5 +1,6 @@
 """The Python package: studies, archives, methods that are functions, records as data frames, figures, errors."""
 
+import importlib
 import json
 import os
 import pathlib
@@ -189,7 +190,7 @@ class Methods(unittest.TestCase):
     def test_needs_and_names_are_checked_by_the_program(self):
         for name, needs, message in (("tea", ["tea"], r"needs\[0\]: found \"tea\"; allowed: setpoints"),
                                      ("sse", [], "found 'sse' from outside"),
-                                     *((name, [], f"found '{name}'; allowed: a name of 1 to 64 letters")
+                                     *((name, [], f"method.{name}: found '.*'; allowed: a name of 1 to 64 letters")
                                        for name in ("b a d", "gr\u00f6\u00dfe", "all", "-x", "a.b", "loops"))):
             with self.assertRaisesRegex(mpmbench.InputError, message):
                 archive.compare(mpmbench.method(lambda loop: True, name=name, needs=needs), quiet=True)
@@ -292,9 +293,9 @@ class Hostile(unittest.TestCase):
         self.check(mpmbench.Comparison(json.dumps({"methods": [method]}), archive, [HOSTILE], {})._repr_html_())
         self.check(mpmbench.Assessment(json.dumps({"found": HOSTILE, "verdict": [HOSTILE] * 3}), None, None)._repr_html_())
         opened = mpmbench.open("a.h5")
-        opened.attributes = {"title": HOSTILE, "master_seed": HOSTILE}
-        opened.path = pathlib.Path(HOSTILE)
         opened.experiments = opened.experiments.assign(kind=("experiment", [HOSTILE] * 20))
+        self.assertEqual(len(opened.findings), len(archive.findings))
+        opened.attributes, opened.path = {"title": HOSTILE, "master_seed": HOSTILE}, pathlib.Path(HOSTILE)
         self.check(opened._repr_html_())
 
     def test_names_are_no_formulas_in_figures(self):
@@ -308,7 +309,7 @@ class Hostile(unittest.TestCase):
 
 class Programs(unittest.TestCase):
     def test_only_the_tree_or_prefix_of_the_package_has_its_program(self):
-        from mpmbench import program
+        program = importlib.import_module("mpmbench.program")
         with tempfile.TemporaryDirectory() as name:
             top = pathlib.Path(name)
             for place in "bin/mpmbench", "build/release/bench/mpmbench", "a/bin/mpmbench", "a/build/release/bench/mpmbench":

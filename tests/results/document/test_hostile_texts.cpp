@@ -1,11 +1,11 @@
 // What others write reaches every writer: names and texts of studies, archives, boards, methods and files.
 // Each writer gets texts that would be markup, macros, formulas or further lines in what it writes.
 
-#include <cctype>
 #include <charconv>
+#include <memory>
 #include <regex>
-#include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <catch2/catch.hpp>

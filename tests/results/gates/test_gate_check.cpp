@@ -123,7 +123,9 @@ TEST_CASE("gate check: against a baseline five lost verdicts are a regression an
 /// is a fault.
 Campaign campaign_of_two(const std::string& options) {
   Campaign campaign = good_campaign();
-  MethodDescription description{.name = "mine", .title = "mine", .verdict = "as it means it"};
+  MethodDescription description;
+  description.name = description.title = "mine";
+  description.verdict = "as it means it";
   description.origin = "program python3 mine.py";
   description.given_options = options;
   description.fingerprint = "python3 mine.py (mine.py 12ab), options " + options;
