@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include "plants/error.hpp"
-#include "plants/non_finite.hpp"
 #include "solvers/active_set_solver.hpp"
 #include "solvers/certified_solver.hpp"
 #include "solvers/ipopt_solver.hpp"
@@ -103,6 +102,14 @@ QpSolverFactory qp_solver_factory(const std::string& name) {
       return back_end.make;
   throw InputError("solver", fmt::format("\"{}\"", name),
                    fmt::format("{}", fmt::join(qp_solver_names(), ", ")));
+}
+
+QpSolverFactory with_time_limit(QpSolverFactory factory, double seconds) {
+  return [factory = std::move(factory), seconds](std::shared_ptr<const QpStructure> structure) {
+    std::unique_ptr<QpSolver> solver = factory(std::move(structure));
+    solver->set_time_limit(seconds);
+    return solver;
+  };
 }
 
 std::vector<std::string> qp_solver_names() {
