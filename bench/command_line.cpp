@@ -15,6 +15,7 @@
 #include "bench/version.hpp"
 #include "plants/error.hpp"
 #include "plants/system/program_trust.hpp"
+#include "plants/system/surroundings.hpp"
 #include "scenarios/toml/toml_table.hpp"
 
 namespace mpm {

@@ -30,6 +30,7 @@
 #include "bench/shards/shard_folder.hpp"
 #include "bench/shards/shard_identity.hpp"
 #include "plants/error.hpp"
+#include "plants/system/surroundings.hpp"
 #include "results/archive/archive.hpp"
 #include "results/document/document_text.hpp"
 #include "results/summary/summary.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/methods/method_table.hpp"
+#include "plants/system/surroundings.hpp"
 #include "plants/system/thread_clock.hpp"
 
 namespace mpm {
@@ -27,6 +28,8 @@ ExperimentOutcome ExperimentWork::run(std::int64_t index) {
       assess(outcome.record);
     outcome.samples = sampler.take();
   } catch (const std::exception& error) {
+    if (is_of_surroundings(error))
+      throw;
     outcome = {};
     outcome.record = lost_record(study_, index, error.what());
   }

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cstddef>
+#include <exception>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include <sys/types.h>
@@ -39,14 +39,15 @@ ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work
 /// process that has no other children.
 void end_children();
 
-/// A message of numbers, or the text of a failure in their place. False when the other end is gone or does
-/// not take it in time.
+/// A message of numbers, or a failure in their place. False when the other end is gone or does not take it in
+/// time.
 bool send_numbers(int socket, const std::vector<double>& numbers, const SocketPatience* patience = nullptr);
-bool send_failure(int socket, const std::string& text);
+bool send_failure(int socket, const std::exception& failure);
 
-/// The next message: at most so many numbers, or the text of a failure and no numbers. What is neither counts
-/// as a failure: the other end may be somebody else's.
-Received receive_numbers(int socket, std::vector<double>& numbers, std::string& failure, std::size_t most,
-                         const SocketPatience* patience = nullptr);
+/// The next message: at most so many numbers, or a failure and no numbers; the failure is a ForeignFailure,
+/// or a SurroundingsFailure where it was sent as one (is_of_surroundings()). What is neither counts as a
+/// ForeignFailure: the other end may be somebody else's.
+Received receive_numbers(int socket, std::vector<double>& numbers, std::exception_ptr& failure,
+                         std::size_t most, const SocketPatience* patience = nullptr);
 
 }  // namespace mpm
