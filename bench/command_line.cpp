@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "bench/commands/commands.hpp"
+#include "bench/console/stop_signals.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/version.hpp"
 #include "plants/error.hpp"
@@ -45,6 +46,7 @@ CommandResult complaint(ExitCode code, const std::exception& error) {
 
 CommandResult work(const CommandSet& commands) {
   try {
+    stop_with_served_process();
     return {commands.work(), ""};
   } catch (const InputError& error) {
     return complaint(ExitCode::bad_input, error);
