@@ -12,7 +12,9 @@
 
 #include "base/error.hpp"
 #include "base/system/program_trust.hpp"
+#include "base/system/surroundings.hpp"
 #include "bench/commands/commands.hpp"
+#include "bench/console/stop_signals.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/version.hpp"
 #include "scenarios/toml/toml_table.hpp"
@@ -44,6 +46,7 @@ CommandResult complaint(ExitCode code, const std::exception& error) {
 
 CommandResult work(const CommandSet& commands) {
   try {
+    stop_with_served_process();
     return {commands.work(), ""};
   } catch (const InputError& error) {
     return complaint(ExitCode::bad_input, error);

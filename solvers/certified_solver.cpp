@@ -25,6 +25,7 @@ void CertifiedSolver::do_solve(const QpData& data, QpResult& result) {
     return;
   if (!ipopt_)
     ipopt_ = std::make_unique<IpoptSolver>(shared_structure_, IpoptOptions{});
+  ipopt_->set_time_limit(time_limit());
   ipopt_->reset();  // the answer must not depend on which problem needed it before
   const int iterations = result.iterations;
   result = ipopt_->solve(data);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <new>
 #include <utility>
 
 #include <coin/IpIpoptApplication.hpp>
@@ -22,6 +24,11 @@ constexpr double kRowTolerance = 1e-9;            // a left-out limit counts as 
 constexpr double kInfeasibilityThreshold = 1e-7;  // smallest violation that proves infeasibility
 constexpr std::size_t kManyRows = 200;            // of P1's 1 620 some 130 are in the set at a quiet step
 constexpr double kPushing = 1e-6;                 // multiplier of a limit that pushes
+constexpr double kForever = 1e6;                  // s: Ipopt's own limit of time
+
+double processor_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 double finite_limit(double limit) {
   return std::clamp(limit, -kIpoptInfinity, kIpoptInfinity);
@@ -171,6 +178,10 @@ QpStatus status_of(Ipopt::ApplicationReturnStatus status) {
       return QpStatus::infeasible;
     case Ipopt::Maximum_Iterations_Exceeded:
       return QpStatus::iteration_limit;
+    case Ipopt::Maximum_CpuTime_Exceeded:
+      return QpStatus::time_limit;
+    case Ipopt::Insufficient_Memory:
+      throw std::bad_alloc();
     default:
       return QpStatus::numerical_error;
   }
@@ -220,8 +231,11 @@ class IpoptSolver::Implementation {
       throw InputError("Ipopt", "an installation that does not start", "Ipopt 3.11 or later with MUMPS");
   }
 
-  /// One Ipopt run over the working set, from and into `result`.
-  QpStatus run(const QpData& data, QpResult& result) {
+  /// One Ipopt run over the working set, from and into `result`, of so many seconds.
+  QpStatus run(const QpData& data, QpResult& result, double seconds) {
+    if (seconds <= 0.0)
+      return QpStatus::time_limit;
+    application_->Options()->SetNumericValue("max_cpu_time", std::min(seconds, kForever));
     program_->bind(data, result);
     const QpStatus status = status_of(application_->OptimizeTNLP(program_));
     if (const auto statistics = application_->Statistics(); Ipopt::IsValid(statistics))
@@ -248,7 +262,12 @@ void IpoptSolver::do_reset() {
   implementation_->set.clear();
 }
 
+double IpoptSolver::seconds_left() const {
+  return end_ - processor_seconds();
+}
+
 void IpoptSolver::do_solve(const QpData& data, QpResult& result) {
+  end_ = processor_seconds() + time_limit();
   if (result.status != QpStatus::solved)
     forget_answer(result);
   result.iterations = 0;
@@ -303,7 +322,7 @@ void IpoptSolver::solve_full(const QpData& data, QpResult& result) {
 // Near the limit of double precision Ipopt may end for want of progress at a point that is as good as any:
 // the certificate decides.
 void IpoptSolver::run(const QpData& data, QpResult& result) {
-  result.status = implementation_->run(data, result);
+  result.status = implementation_->run(data, result, seconds_left());
   if (result.status != QpStatus::solved && kkt_residual(structure(), data, result) <= kSolvedKktResidual)
     result.status = QpStatus::solved;
 }
@@ -328,6 +347,7 @@ bool IpoptSolver::certainly_infeasible(const QpData& data) {
   relaxed.upper = data.upper;
   relaxed.soft_lower = data.hard_lower;
   relaxed.soft_upper = data.hard_upper;
+  feasibility_->set_time_limit(seconds_left());
   feasibility_->reset();
   const QpResult& smallest = feasibility_->solve(relaxed);
   return smallest.status == QpStatus::solved && smallest.slack(0) > kInfeasibilityThreshold;

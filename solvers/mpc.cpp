@@ -52,7 +52,7 @@ Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& o
          const QpSolverFactory& factory)
     : G_(model),
       options_(checked(options, model, mv_count)),
-      factory_(factory),
+      factory_(with_time_limit(factory, options.solver_time_limit)),
       nu_(mv_count),
       model_(model, options.sample_time),
       scratch_(model_),
@@ -71,7 +71,7 @@ Mpc::Mpc(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& o
   if (has_analysers(options.md_analysers))
     late_.emplace(model_, nu_, options.md_analysers);
   if (options.has_targets()) {
-    targets_.emplace(gain.leftCols(mv_count), options, factory);
+    targets_.emplace(gain.leftCols(mv_count), options, factory_);
     pass_on_targets();
   }
   input_.setZero(model.cols());
@@ -234,7 +234,15 @@ void Mpc::set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) {
   input_.head(nu_) = u;
 }
 
+std::string Mpc::failure() const {
+  return reason_ == QpStatus::time_limit
+             ? fmt::format("{}: Ipopt needed more than controller.solver_time_limit, {:g} s, for a problem",
+                           Controller::failure(), options_.solver_time_limit)
+             : Controller::failure();
+}
+
 void Mpc::note(const QpResult& answer) {
+  reason_ = answer.status;
   move_.status = control_status(answer.status);
   move_.iterations += answer.iterations;
   move_.fallbacks += answer.from_ipopt ? 1 : 0;

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -62,6 +63,7 @@ class Mpc final : public Controller {
   Eigen::VectorXd nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) override;
   std::optional<SolvedQp> target_problem() const override;
   std::optional<SolvedQp> move_problem() const override;
+  std::string failure() const override;
 
  private:
   /// The moves of one sample, as a problem and its solver.
@@ -98,6 +100,7 @@ class Mpc final : public Controller {
   SwitchedOff off_;
   Eigen::MatrixXd free_;  ///< ny x Hp
   ControlMove move_;
+  QpStatus reason_ = QpStatus::solved;  ///< of move_.status
 };
 
 }  // namespace mpm

@@ -67,11 +67,11 @@ auto members(const MpcOptions& options) {
   const auto& [sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
                setpoint_weight, slack_weight, slack_cost, reference_time, bias_ramp, analysers, md_analysers,
                move_blocks, weight_convention, slack_form, mv_hard, move_limit, cv_hard, cv_soft, mv_cost,
-               resting_value, resting_weight, target_violation_cost] = options;
+               resting_value, resting_weight, target_violation_cost, solver_time_limit] = options;
   return std::tie(sample_time, prediction_horizon, control_horizon, move_suppression, target_weight,
                   setpoint_weight, slack_weight, slack_cost, reference_time, bias_ramp, analysers,
                   md_analysers, move_blocks, weight_convention, slack_form, mv_hard, move_limit, cv_hard,
-                  cv_soft, mv_cost, resting_value, resting_weight, target_violation_cost);
+                  cv_soft, mv_cost, resting_value, resting_weight, target_violation_cost, solver_time_limit);
 }
 
 }  // namespace
@@ -178,6 +178,8 @@ void MpcOptions::validate(Eigen::Index cv_count, Eigen::Index mv_count, Eigen::I
         fmt::format("{} finite ones", mv_count));
   if (!(std::isfinite(target_violation_cost) && target_violation_cost > 0))
     throw InputError("target_violation_cost", fmt::format("{}", target_violation_cost), "a number > 0");
+  if (!(solver_time_limit > 0))
+    throw InputError("solver_time_limit", fmt::format("{}", solver_time_limit), "a number > 0");
 }
 
 bool operator==(const Limits& a, const Limits& b) {

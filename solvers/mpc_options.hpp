@@ -102,6 +102,8 @@ struct MpcOptions {
   /// Cost of a unit of steady-state violation of a CV soft limit in the target optimizer, relative to the
   /// largest |mv_cost|. Large enough that limits are left only when no target keeps them (docs/methods.md).
   double target_violation_cost = 1000.0;
+  /// Processor seconds that Ipopt may take for one problem (QpSolver::set_time_limit()).
+  double solver_time_limit = 10.0;
 
   bool has_setpoint(Eigen::Index cv) const { return setpoint_weight(cv) > 0.0; }
   bool has_setpoints() const { return (setpoint_weight.array() > 0.0).any(); }

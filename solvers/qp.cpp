@@ -121,6 +121,8 @@ std::string_view to_string(QpStatus status) {
       return "iteration limit";
     case QpStatus::numerical_error:
       return "numerical error";
+    case QpStatus::time_limit:
+      return "time limit";
   }
   return "unknown";
 }

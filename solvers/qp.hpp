@@ -60,7 +60,7 @@ struct QpData {
   void validate(const QpStructure& structure) const;
 };
 
-enum class QpStatus { solved, infeasible, iteration_limit, numerical_error };
+enum class QpStatus { solved, infeasible, iteration_limit, numerical_error, time_limit };
 
 std::string_view to_string(QpStatus status);
 

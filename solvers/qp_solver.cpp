@@ -65,4 +65,12 @@ void QpSolver::reset() {
   do_reset();
 }
 
+QpSolverFactory with_time_limit(QpSolverFactory factory, double seconds) {
+  return [factory = std::move(factory), seconds](std::shared_ptr<const QpStructure> structure) {
+    std::unique_ptr<QpSolver> solver = factory(std::move(structure));
+    solver->set_time_limit(seconds);
+    return solver;
+  };
+}
+
 }  // namespace mpm

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "base/non_finite.hpp"
 #include "solvers/lanes/lane_program.hpp"
 #include "solvers/qp.hpp"
 
@@ -43,6 +44,11 @@ class QpSolver {
   /// active limits rather than a point passes over it.
   const QpResult& solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x);
 
+  /// Processor seconds that Ipopt may take for one problem from now on, all of its runs together; a problem
+  /// that needs more has the status `time_limit`. Infinite at first. The active-set method has a limit of its
+  /// steps and takes no notice.
+  void set_time_limit(double seconds) { time_limit_ = seconds; }
+
   /// Forgets the warm start, so that the next answer depends on its problem alone.
   void reset();
 
@@ -52,6 +58,7 @@ class QpSolver {
   const QpResult& result() const { return result_; }
 
  protected:
+  double time_limit() const { return time_limit_; }
   /// The structure for the kernels.
   const std::shared_ptr<const LaneProgram>& lanes() const { return workspace_->lanes; }
   /// True when the KKT residual of the answer is at most `limit`; it is then kept in `result`, which must no
@@ -73,6 +80,7 @@ class QpSolver {
   std::shared_ptr<const QpStructure> structure_;
   QpResult result_;
   std::unique_ptr<KktWorkspace> workspace_;
+  double time_limit_ = kInfinity;
 };
 
 /// A problem as a controller met it, and the answer it got. The parts belong to the controller and stay valid
@@ -85,5 +93,8 @@ struct SolvedQp {
 
 /// Makes a solver for a structure: how a controller is given its back end.
 using QpSolverFactory = std::function<std::unique_ptr<QpSolver>(std::shared_ptr<const QpStructure>)>;
+
+/// `factory` with this time limit of each problem (QpSolver::set_time_limit()).
+QpSolverFactory with_time_limit(QpSolverFactory factory, double seconds);
 
 }  // namespace mpm

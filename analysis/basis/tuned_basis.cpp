@@ -25,7 +25,7 @@ class StepCounter {
   }
   /// What ended the loops, when something did: without an answer to its problem a controller is infeasible.
   ControlStatus reason() const {
-    const bool gave_up = last_ == QpStatus::iteration_limit || last_ == QpStatus::numerical_error;
+    const bool gave_up = last_ != QpStatus::solved && last_ != QpStatus::infeasible;
     return gave_up ? ControlStatus::failed : ControlStatus::infeasible;
   }
 

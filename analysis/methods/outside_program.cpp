@@ -170,18 +170,16 @@ class ProgramMethod final : public AssessmentMethod {
     for (Told& each : told_)
       told["answers"][each.method->name] = answer_json(each.assessor.assess(loop), plant_, *each.method);
     Json answer;
+    std::unique_ptr<ProgramTalk> talk = std::move(talk_);
     try {
-      if (!talk_)
-        begin();
-      answer = talk_->ask(question("loop", std::move(told)));
+      if (!talk)
+        talk = begun();
+      answer = talk->ask(question("loop", std::move(told)));
     } catch (const ChildFailure& error) {
-      talk_.reset();
       throw InputError(fmt::format("method '{}'", program_.name), error.what(),
                        fmt::format("an answer within {} s", program_.time_limit));
-    } catch (const InputError&) {
-      talk_.reset();
-      throw;
     }
+    talk_ = std::move(talk);
     return assessment_of(answer, plant_, method_, fmt::format("method '{}'", program_.name));
   }
 
@@ -192,10 +190,11 @@ class ProgramMethod final : public AssessmentMethod {
     Assessor assessor;
   };
 
-  void begin() {
-    talk_ = talk_with(program_);
-    talk_->ask(question("describe", describe_content(program_)));
-    talk_->ask(question("context", context_));
+  std::unique_ptr<ProgramTalk> begun() const {
+    std::unique_ptr<ProgramTalk> talk = talk_with(program_);
+    talk->ask(question("describe", describe_content(program_)));
+    talk->ask(question("context", context_));
+    return talk;
   }
 
   const MethodProgram program_;

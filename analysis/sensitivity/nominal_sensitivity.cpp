@@ -221,9 +221,7 @@ Eigen::MatrixXd reference_record(const Study& study, const OperatingPoint& point
           "nominal sensitivity",
           fmt::format("a controller that is {} after a step in the {} of {}{}", to_string(move.status),
                       to_string(reference.kind), study.plant.cvs[static_cast<std::size_t>(reference.cv)].name,
-                      study.controller_program && move.status == ControlStatus::failed
-                          ? fmt::format(" ({})", controller.failure())
-                          : ""),
+                      move.status == ControlStatus::failed ? fmt::format(" ({})", controller.failure()) : ""),
           "a relaxed controller with a solution (are the active CVs right?)");
     input.head(u.size()) = move.u;
     plant.advance(input);

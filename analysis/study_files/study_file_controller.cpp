@@ -345,6 +345,10 @@ OptionKeys controller_keys(Study& study) {
                       "price of one unit of steady-state violation of a soft limit, in multiples of the "
                       "largest `cost`. Open: (6.19) has no solution if no target keeps the limits",
                       "1"),
+          key::number("solver_time_limit", options.solver_time_limit, NumberRule::positive(),
+                      "processor time that Ipopt may take for one problem, where it answers in place of the "
+                      "active-set method or alone; a loop that needs more is `failed`",
+                      "s"),
           variable_tables<MvOptions>("mv", study.plant.mvs, take_mv, "one table for each MV, by name"),
           variable_tables<CvOptions>("cv", study.plant.cvs, take_cv, "one table for each CV, by name"),
           variable_tables<AnalyserTiming>("md", study.plant.mds, take_md,

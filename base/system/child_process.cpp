@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstring>
 #include <ctime>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -33,7 +34,7 @@ class Pipe {
  public:
   Pipe() {
     if (::pipe2(ends_.data(), O_CLOEXEC) != 0)
-      throw ChildFailure(fmt::format("no pipe for a program: {}", std::strerror(errno)));
+      throw std::system_error(errno, std::generic_category(), "no pipe for a program");
   }
   ~Pipe() {
     for (const int end : ends_)
@@ -119,6 +120,11 @@ class SpawnFiles {
   posix_spawn_file_actions_t actions_{};
 };
 
+/// Of what it takes to start any program, whichever it is.
+bool is_shortage(int error) {
+  return error == EAGAIN || error == ENOMEM || error == EMFILE || error == ENFILE;
+}
+
 int milliseconds_until(ChildProcess::Deadline deadline) {
   constexpr std::int64_t kLongest = 3600 * 1000;
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
@@ -143,7 +149,10 @@ ChildProcess::ChildProcess(std::vector<std::string> command)
       ::posix_spawnp(&pid_, arguments.front(), files.get(), attributes.get(), arguments.data(), environ);
   if (failure != 0) {
     pid_ = -1;
-    throw ChildFailure(fmt::format("program `{}` cannot be started: {}", name_, std::strerror(failure)));
+    const std::string what = fmt::format("program `{}` cannot be started", name_);
+    if (is_shortage(failure))
+      throw std::system_error(failure, std::generic_category(), what);
+    throw ChildFailure(fmt::format("{}: {}", what, std::strerror(failure)));
   }
   ends_ = {in.take(1), out.take(0), error.take(0)};
 }
@@ -191,8 +200,8 @@ void ChildProcess::read_errors() {
 }
 
 /// A program that closes its stdout usually ends at once, and then says more by its code than by our signal.
-std::string ChildProcess::how_it_ended() {
-  constexpr std::chrono::milliseconds kGrace(500), kLook(2);
+void ChildProcess::fail_by_end() {
+  constexpr std::chrono::milliseconds kGrace(2000), kLook(2);
   const auto until = std::chrono::steady_clock::now() + kGrace;
   int status = 0;
   pid_t ended = 0;
@@ -202,27 +211,27 @@ std::string ChildProcess::how_it_ended() {
     std::this_thread::sleep_for(kLook);
   }
   if (ended != pid_ || pid_ < 0)
-    return "closed its stdin or stdout";
+    fail({"closed its stdin or stdout", false});
   ::kill(-pid_, SIGKILL);  // what it has started itself
   pid_ = -1;
-  return WIFSIGNALED(status)
-             ? fmt::format("ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)))
-             : fmt::format("ended with code {}", WEXITSTATUS(status));
+  fail(process_end(status));
 }
 
-void ChildProcess::fail(const std::string& what) {
+void ChildProcess::fail(const ProcessEnd& what) {
   kill_and_reap();
   read_errors();
-  const std::string errors = foreign_text(last_errors_, kKeptErrors);
-  throw ChildFailure(errors.empty()
-                         ? fmt::format("program `{}` {}", name_, what)
-                         : fmt::format("program `{}` {}; at the end of its stderr: {}", name_, what, errors));
+  std::string text = fmt::format("program `{}` {}", name_, what.text);
+  if (const std::string errors = foreign_text(last_errors_, kKeptErrors); !errors.empty())
+    text += fmt::format("; at the end of its stderr: {}", errors);
+  if (what.from_outside)
+    throw SurroundingsFailure(text);
+  throw ChildFailure(text);
 }
 
 /// Waits until something can be written or read, and does it.
 void ChildProcess::pump(Deadline deadline) {
   if (pid_ < 0)
-    fail("has ended before");
+    fail({"has ended before", false});
   std::array<pollfd, 3> watched{};
   watched[kIn] = {unsent_.empty() ? -1 : ends_[kIn], POLLOUT, 0};
   watched[kOut] = {ends_[kOut], POLLIN, 0};
@@ -230,9 +239,9 @@ void ChildProcess::pump(Deadline deadline) {
   const int wait = milliseconds_until(deadline);
   const int ready = ::poll(watched.data(), watched.size(), wait);
   if (ready < 0 && errno != EINTR)
-    fail(fmt::format("cannot be waited for: {}", std::strerror(errno)));
+    fail({fmt::format("cannot be waited for: {}", std::strerror(errno)), true});
   if (wait == 0)
-    fail("did not answer in time");
+    fail({"did not answer in time", false});
   if (ready <= 0)
     return;
   if (watched[kError].revents != 0)
@@ -245,7 +254,7 @@ void ChildProcess::pump(Deadline deadline) {
     else if (count == 0)
       output_is_closed_ = true;
     if (unread_.size() > kLongestLine)
-      fail(fmt::format("wrote more than {} bytes that nobody asked for", kLongestLine));
+      fail({fmt::format("wrote more than {} bytes that nobody asked for", kLongestLine), false});
   }
   if (watched[kIn].revents != 0) {
     const NoBrokenPipeSignal guard;
@@ -253,7 +262,7 @@ void ChildProcess::pump(Deadline deadline) {
     if (count > 0)
       unsent_.erase(0, static_cast<std::size_t>(count));
     else if (errno == EPIPE)
-      fail(how_it_ended());
+      fail_by_end();
   }
 }
 
@@ -262,7 +271,7 @@ void ChildProcess::send(std::string_view line, Deadline deadline) {
   while (!unsent_.empty()) {
     pump(deadline);
     if (output_is_closed_)
-      fail(how_it_ended());
+      fail_by_end();
   }
 }
 
@@ -281,7 +290,7 @@ std::string ChildProcess::receive(Deadline deadline) {
     }
     searched_ = unread_.size();
     if (output_is_closed_)
-      fail(how_it_ended());
+      fail_by_end();
     pump(deadline);
   }
 }

@@ -10,10 +10,14 @@
 
 #include <sys/types.h>
 
+#include "base/system/surroundings.hpp"
+
 namespace mpm {
 
 /// A program that was asked gave no answer: it could not be started, ended, took too long, or sent a line
-/// without end. The text says which, with the end of what it wrote to stderr.
+/// without end. The text says which, with the end of what it wrote to stderr. One that somebody has killed,
+/// or for which there were no files, processes or memory, is a failure of the surroundings
+/// (is_of_surroundings()), never this.
 class ChildFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -27,7 +31,7 @@ class ChildFailure : public std::runtime_error {
 /// reaches this program alone; the destructor kills the group. When this process dies without one, the
 /// program sees the end of its stdin.
 ///
-/// After a ChildFailure the program is dead: make another one.
+/// After a failure of either kind the program is dead: make another one.
 class ChildProcess {
  public:
   using Deadline = std::chrono::steady_clock::time_point;
@@ -35,18 +39,19 @@ class ChildProcess {
   static constexpr std::size_t kLongestLine = std::size_t{64} << 20;  ///< bytes of an answer
 
   /// Starts the program `command[0]`, which is looked for in PATH, with the arguments after it, in the
-  /// working folder of this process. Throws ChildFailure when there is no such program, UntrustedProgram
-  /// when nobody has allowed it (program_trust.hpp).
+  /// working folder of this process. Throws ChildFailure when there is no such program, a failure of the
+  /// surroundings when nothing can be started, UntrustedProgram when nobody has allowed it
+  /// (program_trust.hpp).
   explicit ChildProcess(std::vector<std::string> command);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   /// Sends a line, and an empty one behind it: GNU Octave hands out a line only when another one follows.
-  /// Throws ChildFailure.
+  /// Throws ChildFailure and SurroundingsFailure.
   void send(std::string_view line, Deadline deadline);
 
-  /// The next line of the program that is not empty, without its end. Throws ChildFailure.
+  /// The next line of the program that is not empty, without its end. Throws the same.
   std::string receive(Deadline deadline);
 
   /// Is it a program of this process, not of the one that this was forked from? Such a program is left
@@ -63,8 +68,8 @@ class ChildProcess {
   void pump(Deadline deadline);
   void read_errors();
   void kill_and_reap();
-  std::string how_it_ended();
-  [[noreturn]] void fail(const std::string& what);
+  [[noreturn]] void fail_by_end();
+  [[noreturn]] void fail(const ProcessEnd& what);
 
   std::string name_;             ///< the command, for messages
   pid_t owner_;                  ///< the process that started it

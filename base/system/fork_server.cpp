@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "base/system/forked_process.hpp"
+#include "base/system/surroundings.hpp"
 
 namespace mpm {
 namespace {
@@ -79,7 +80,7 @@ class ServiceOrder {
 void mediate(int socket, const ForkedService::Serve& serve, double time_limit) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::vector<double> numbers;
-  std::string failure;
+  std::exception_ptr failure;
   std::optional<ForkedService> service;
   bool open = true;
   while (open && receive_numbers(socket, numbers, failure, ForkedService::kMostNumbers) == Received::all) {
@@ -88,7 +89,7 @@ void mediate(int socket, const ForkedService::Serve& serve, double time_limit) {
         service.emplace(serve, time_limit);
       open = send_numbers(socket, service->ask(numbers, socket));
     } catch (const std::exception& error) {
-      open = send_failure(socket, error.what());
+      open = send_failure(socket, error);
     }
   }
   service.reset();
@@ -148,7 +149,7 @@ ServedProcess::ServedProcess(const ForkServer& server, const std::vector<double>
   socket_ = ends[0];
   if (!is_ordered) {
     ::close(socket_);
-    throw ForeignFailure("the process that makes its processes has ended");
+    throw SurroundingsFailure("the process that makes its processes has ended");
   }
 }
 
@@ -165,15 +166,16 @@ std::vector<double> ServedProcess::ask(const std::vector<double>& request) {
                                     std::chrono::duration<double>(std::min(time_limit_, kCentury) + kGrace))};
   send_numbers(socket_, request, &patience);  // a failure shows below
   std::vector<double> numbers;
-  std::string failure;
+  std::exception_ptr failure;
   const Received got = receive_numbers(socket_, numbers, failure, ForkedService::kMostNumbers, &patience);
   if (got != Received::all) {
     ::shutdown(socket_, SHUT_RDWR);  // a late answer would be that to the next question
-    throw ForeignFailure(got == Received::late ? fmt::format("no answer within {} s", time_limit_)
-                                               : "its process has ended");
+    if (got == Received::late)
+      throw ForeignFailure(fmt::format("no answer within {} s", time_limit_));
+    throw SurroundingsFailure("the process that waits for it has ended");
   }
-  if (!failure.empty())
-    throw ForeignFailure(failure);
+  if (failure)
+    std::rethrow_exception(failure);
   return numbers;
 }
 

@@ -41,13 +41,14 @@ class ForkServer {
 class ServedProcess {
  public:
   /// An answer that takes longer than `time_limit` seconds counts as none. Errors: std::system_error when
-  /// there is no socket, ForeignFailure when the server is gone.
+  /// there is no socket, SurroundingsFailure when the server is gone.
   ServedProcess(const ForkServer& server, const std::vector<double>& setting, double time_limit);
   ServedProcess(const ServedProcess&) = delete;
   ServedProcess& operator=(const ServedProcess&) = delete;
   ~ServedProcess();
 
-  /// The answer. Errors: ForeignFailure as ForkedService::ask().
+  /// The answer. Errors: as ForkedService::ask(); SurroundingsFailure also when the process that waits for
+  /// the service has ended, in which no code of others runs.
   std::vector<double> ask(const std::vector<double>& request);
 
  private:

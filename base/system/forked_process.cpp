@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <string>
 #include <system_error>
 #include <thread>
 
@@ -17,22 +18,30 @@
 #include <unistd.h>
 
 #include "base/system/foreign_text.hpp"
+#include "base/system/surroundings.hpp"
 
 namespace mpm {
 namespace {
 
-/// Header of a message: how many bytes follow, and whether they are the text of a failure.
+enum class MessageKind : std::int64_t { numbers, failure, surroundings };
+
+/// Header of a message: how many bytes follow, and whether they are numbers or the text of a failure.
 struct MessageHeader {
-  std::int64_t failed;
+  MessageKind kind;
   std::int64_t size;
 };
 
 constexpr std::size_t kLongestFailure = 1000;  // bytes
 
-bool send_message(int socket, const void* data, std::size_t size, bool failed,
+bool send_message(int socket, const void* data, std::size_t size, MessageKind kind,
                   const SocketPatience* patience) {
-  const MessageHeader header{failed ? 1 : 0, static_cast<std::int64_t>(size)};
+  const MessageHeader header{kind, static_cast<std::int64_t>(size)};
   return send_bytes(socket, &header, sizeof header, patience) && send_bytes(socket, data, size, patience);
+}
+
+std::exception_ptr failure_of(MessageKind kind, const std::string& text) {
+  return kind == MessageKind::surroundings ? std::make_exception_ptr(SurroundingsFailure(text))
+                                           : std::make_exception_ptr(ForeignFailure(text));
 }
 
 /// Kills those that are there now.
@@ -51,12 +60,14 @@ int leave_parent(int socket) {
   ::signal(SIGINT, SIG_IGN);  // of the terminal: its parent decides
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
-  const int own = ::fcntl(socket, F_DUPFD, kSocket + 1);  // out of the way of those that follow
+  ::dup2(socket, kSocket);
+  ::close_range(kSocket + 1, ~0U, 0);  // before one is opened: there may be no other left
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (int stream = 0; stream < kSocket; ++stream)
     ::dup2(nowhere, stream);
-  ::dup2(own, kSocket);
-  ::close_range(kSocket + 1, ~0U, 0);
+  if (nowhere > kSocket)
+    ::close(nowhere);
+  ::fcntl(kSocket, F_SETFD, 0);
   return kSocket;
 }
 
@@ -97,26 +108,30 @@ void end_children() {
 }
 
 bool send_numbers(int socket, const std::vector<double>& numbers, const SocketPatience* patience) {
-  return send_message(socket, numbers.data(), numbers.size() * sizeof(double), false, patience);
+  return send_message(socket, numbers.data(), numbers.size() * sizeof(double), MessageKind::numbers,
+                      patience);
 }
 
-bool send_failure(int socket, const std::string& text) {
-  const std::string shown = foreign_text(text, kLongestFailure);
-  return send_message(socket, shown.data(), shown.size(), true, nullptr);
+bool send_failure(int socket, const std::exception& failure) {
+  const std::string shown = foreign_text(what_happened(failure), kLongestFailure);
+  return send_message(socket, shown.data(), shown.size(),
+                      is_of_surroundings(failure) ? MessageKind::surroundings : MessageKind::failure,
+                      nullptr);
 }
 
-Received receive_numbers(int socket, std::vector<double>& numbers, std::string& failure, std::size_t most,
-                         const SocketPatience* patience) {
+Received receive_numbers(int socket, std::vector<double>& numbers, std::exception_ptr& failure,
+                         std::size_t most, const SocketPatience* patience) {
   numbers.clear();
-  failure.clear();
+  failure = nullptr;
   MessageHeader header{};
   if (const Received got = receive_bytes(socket, &header, sizeof header, patience); got != Received::all)
     return got;
-  const bool failed = header.failed != 0;
+  const bool failed = header.kind != MessageKind::numbers;
   const std::size_t longest = failed ? 2 * kLongestFailure : most * sizeof(double);
   if (header.size < 0 || static_cast<std::size_t>(header.size) > longest ||
       (!failed && static_cast<std::size_t>(header.size) % sizeof(double) != 0)) {
-    failure = fmt::format("a message of {} bytes; allowed: 0 to {}", header.size, longest);
+    failure = failure_of(MessageKind::failure,
+                         fmt::format("a message of {} bytes; allowed: 0 to {}", header.size, longest));
     return Received::all;
   }
   const auto size = static_cast<std::size_t>(header.size);
@@ -124,11 +139,10 @@ Received receive_numbers(int socket, std::vector<double>& numbers, std::string& 
     numbers.resize(size / sizeof(double));
     return receive_bytes(socket, numbers.data(), numbers.size() * sizeof(double), patience);
   }
-  failure.resize(size);
-  const Received got = receive_bytes(socket, failure.data(), size, patience);
-  failure = foreign_text(failure, 2 * kLongestFailure);
-  if (failure.empty())
-    failure = "it failed without a reason";
+  std::string text(size, '\0');
+  const Received got = receive_bytes(socket, text.data(), size, patience);
+  text = foreign_text(text, 2 * kLongestFailure);
+  failure = failure_of(header.kind, text.empty() ? "it failed without a reason" : text);
   return got;
 }
 

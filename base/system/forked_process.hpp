@@ -2,8 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <exception>
 #include <functional>
-#include <string>
+#include <stdexcept>
 #include <vector>
 
 #include <sys/types.h>
@@ -13,6 +14,13 @@
 // What processes that were forked off have in common: how they begin, and how they talk.
 
 namespace mpm {
+
+/// A simulation of somebody else that gave no answer: what happened, for people. It was asked; otherwise it
+/// is a SurroundingsFailure.
+class ForeignFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Makes this copy of a process one that has nothing of it but its memory: signals as a program finds them,
 /// SIGINT left to the parent, no core, standard streams that lead nowhere, and of all files `socket` alone.
@@ -39,14 +47,15 @@ ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work
 /// process that has no other children.
 void end_children();
 
-/// A message of numbers, or the text of a failure in their place. False when the other end is gone or does
-/// not take it in time.
+/// A message of numbers, or a failure in their place. False when the other end is gone or does not take it in
+/// time.
 bool send_numbers(int socket, const std::vector<double>& numbers, const SocketPatience* patience = nullptr);
-bool send_failure(int socket, const std::string& text);
+bool send_failure(int socket, const std::exception& failure);
 
-/// The next message: at most so many numbers, or the text of a failure and no numbers. What is neither counts
-/// as a failure: the other end may be somebody else's.
-Received receive_numbers(int socket, std::vector<double>& numbers, std::string& failure, std::size_t most,
-                         const SocketPatience* patience = nullptr);
+/// The next message: at most so many numbers, or a failure and no numbers; the failure is a ForeignFailure,
+/// or a SurroundingsFailure where it was sent as one (is_of_surroundings()). What is neither counts as a
+/// ForeignFailure: the other end may be somebody else's.
+Received receive_numbers(int socket, std::vector<double>& numbers, std::exception_ptr& failure,
+                         std::size_t most, const SocketPatience* patience = nullptr);
 
 }  // namespace mpm

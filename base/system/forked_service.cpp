@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstring>
 #include <exception>
 #include <string>
 #include <system_error>
@@ -16,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/system/forked_process.hpp"
+#include "base/system/surroundings.hpp"
 
 namespace mpm {
 namespace {
@@ -24,13 +24,13 @@ using Clock = std::chrono::steady_clock;
 
 void serve_until_closed(int socket, const ForkedService::Serve& serve, std::size_t most) {
   std::vector<double> numbers;
-  std::string failure;
+  std::exception_ptr failure;
   bool open = true;
   while (open && receive_numbers(socket, numbers, failure, most) == Received::all) {
     try {
       open = send_numbers(socket, serve(numbers));
     } catch (const std::exception& error) {
-      open = send_failure(socket, error.what());
+      open = send_failure(socket, error);
     }
   }
 }
@@ -63,12 +63,12 @@ std::vector<double> ForkedService::ask(const std::vector<double>& request, int u
       user};
   send_numbers(socket_, request, &patience);  // a failure shows below
   std::vector<double> numbers;
-  std::string failure;
+  std::exception_ptr failure;
   switch (receive_numbers(socket_, numbers, failure, most_, &patience)) {
     case Received::all:
       break;
     case Received::closed:
-      throw how_it_ended();
+      fail_by_end();
     case Received::late:
       end();
       throw ForeignFailure(fmt::format("no answer within {} s", time_limit_));
@@ -76,8 +76,8 @@ std::vector<double> ForkedService::ask(const std::vector<double>& request, int u
       end();
       throw ForeignFailure("nobody waits for its answer");
   }
-  if (!failure.empty())
-    throw ForeignFailure(failure);
+  if (failure)
+    std::rethrow_exception(failure);
   return numbers;
 }
 
@@ -92,8 +92,8 @@ void ForkedService::end() {
 }
 
 /// Its socket is closed, as a rule because it has ended; what only closes it is given a moment.
-ForeignFailure ForkedService::how_it_ended() {
-  constexpr std::chrono::milliseconds kGrace(500), kLook(1);
+void ForkedService::fail_by_end() {
+  constexpr std::chrono::milliseconds kGrace(2000), kLook(1);
   const Clock::time_point until = Clock::now() + kGrace;
   int status = 0;
   pid_t ended = 0;
@@ -101,14 +101,15 @@ ForeignFailure ForkedService::how_it_ended() {
     std::this_thread::sleep_for(kLook);
   if (ended != pid_) {
     end();
-    return ForeignFailure("its process closed the connection to this one");
+    throw ForeignFailure("its process closed the connection to this one");
   }
   ::kill(-pid_, SIGKILL);  // what it has started itself
   pid_ = -1;
-  return ForeignFailure(WIFSIGNALED(status)
-                            ? fmt::format("its process ended by signal {} ({})", WTERMSIG(status),
-                                          ::strsignal(WTERMSIG(status)))
-                            : fmt::format("its process ended with code {}", WEXITSTATUS(status)));
+  const ProcessEnd end = process_end(status);
+  const std::string text = fmt::format("its process {}", end.text);
+  if (end.from_outside)
+    throw SurroundingsFailure(text);
+  throw ForeignFailure(text);
 }
 
 }  // namespace mpm

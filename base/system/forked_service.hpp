@@ -2,18 +2,13 @@
 
 #include <cstddef>
 #include <functional>
-#include <stdexcept>
 #include <vector>
 
 #include <sys/types.h>
 
-namespace mpm {
+#include "base/system/forked_process.hpp"
 
-/// A simulation of somebody else that gave no answer: what happened, for people.
-class ForeignFailure : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+namespace mpm {
 
 /// A function at work in a process of its own, so that a crash of what it calls, a call that never comes back
 /// and what it leaves in memory end with this process.
@@ -37,12 +32,13 @@ class ForkedService {
 
   /// The answer. Errors: ForeignFailure with what the function threw, how its process ended, or that the time
   /// was over; after the last two the process is gone, with all of its group. So it is, and at once, when the
-  /// other end of the socket `user` is gone, for whom the answer is.
+  /// other end of the socket `user` is gone, for whom the answer is. SurroundingsFailure when somebody has
+  /// killed the process, and when what the function threw was of the surroundings.
   std::vector<double> ask(const std::vector<double>& request, int user = -1);
 
  private:
   void end();
-  ForeignFailure how_it_ended();
+  [[noreturn]] void fail_by_end();
 
   double time_limit_;
   std::size_t most_;

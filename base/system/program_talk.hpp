@@ -18,12 +18,12 @@ namespace mpm {
 class ProgramTalk {
  public:
   /// Starts the program. `place` is its name in messages; `time_limit`: seconds that an answer may take.
-  /// Throws ChildFailure.
+  /// Throws ChildFailure, and failures of the surroundings (is_of_surroundings()).
   ProgramTalk(std::string place, const std::vector<std::string>& command, double time_limit);
 
   /// The answer to a message, without its number. What the program computes meanwhile is processor time of
-  /// the thread (thread_clock.hpp). Throws ChildFailure; and InputError for a line that is no answer. After
-  /// both the talk is out of step and over.
+  /// the thread (thread_clock.hpp). Throws ChildFailure, SurroundingsFailure, and InputError for a line that
+  /// is no answer. After any of them the talk is out of step and over.
   nlohmann::ordered_json ask(nlohmann::ordered_json message);
 
   /// Is it a talk of this process? Not in one that was forked off: there it cannot be gone on with.

@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "base/system/surroundings.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "results/archive/columns.hpp"
 #include "scenarios/loop/calibration.hpp"
@@ -151,7 +152,7 @@ ShardStore CampaignLoops::open(const std::filesystem::path& folder, const ShardS
 }
 
 LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& warn) const {
-  LoopWork work{.jobs = options_.jobs};
+  LoopWork work{.jobs = options_.jobs, .on_warning = warn};
   const bool in_threads = runs_in_threads(study_, options_);
   const bool fall_back = options_.solver == "auto" && !study_.controller_program;
   if (in_threads)
@@ -213,6 +214,8 @@ ExperimentOutcome CampaignLoops::outcome(const ShardStore::Entry& entry) const {
       throw std::runtime_error(fmt::format("loop {}", outcome.record.draw.index));
     return outcome;
   } catch (const std::exception& error) {  // also an InputError of a part that refuses its numbers
+    if (is_of_surroundings(error))
+      throw;
     throw UnreadableShard(*entry.shard, fmt::format("entry {}: {}", entry.key, error.what()));
   }
 }

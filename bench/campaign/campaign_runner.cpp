@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <ctime>
+#include <exception>
 #include <system_error>
 #include <utility>
 
@@ -9,8 +10,10 @@
 #include <fmt/format.h>
 
 #include "analysis/basis/basis_runs.hpp"
+#include "base/system/surroundings.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/comparison_runner.hpp"
+#include "bench/execution/second_try.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
@@ -86,10 +89,16 @@ Campaign run_to_end(Study study, const RunOptions& options, const CampaignHooks&
 
 BasisCase checked_basis(const Study& study, const RunOptions& options, const CampaignHooks& hooks,
                         std::int64_t done, std::int64_t count) {
-  BasisCase basis = run_basis_case(study, qp_solver_factory(options.solver), [&](const Controller&) {
+  const auto look = [&](const Controller&) {
     if (requested(hooks.stop))
       throw Interrupted(done, count);
-  });
+  };
+  const auto warn = [&](const std::exception& error) {
+    if (hooks.on_warning)
+      hooks.on_warning(fmt::format("{}; the basis case is run once more", what_happened(error)));
+  };
+  BasisCase basis =
+      second_try([&] { return run_basis_case(study, qp_solver_factory(options.solver), look); }, warn);
   if (hooks.on_basis)
     hooks.on_basis(study, basis);
   require_health(basis, options);

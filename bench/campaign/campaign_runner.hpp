@@ -28,15 +28,15 @@ BasisCase checked_basis(const Study& study, const RunOptions& options, const Cam
 CampaignInfo info_of(const Study& study, const RunOptions& options);
 
 /// Runs the basis case, checks it, and then the experiments, in threads or processes. The records stand in
-/// the order of their index; an experiment whose worker process died is marked `failed` and the campaign goes
-/// on. Basis case, records and audit are the same, bit for bit, for any number of jobs, and whether the
+/// the order of their index; an experiment whose worker process crashed is marked `failed` and the campaign
+/// goes on. Basis case, records and audit are the same, bit for bit, for any number of jobs, and whether the
 /// campaign was run in one go or resumed. Finished experiments wait in shards in the folder
 /// `shards`, in memory without one. The shards are still there when it returns: they may go when the archive
 /// is written.
 ///
 /// Throws InputError for options that make no campaign (threads for a solver that is not thread-safe),
-/// UnhealthyBasis and Interrupted as checked_basis(), Interrupted when a stop was requested, InputError and
-/// ArchiveError of ShardStore, std::system_error when no worker process can be made.
+/// UnhealthyBasis and Interrupted as checked_basis(), Interrupted as run_missing(), InputError and
+/// ArchiveError of ShardStore.
 Campaign run_campaign(Study study, const RunOptions& options, const CampaignHooks& hooks = {},
                       const std::optional<std::filesystem::path>& shards = {});
 

@@ -5,11 +5,16 @@
 #include <chrono>
 #include <cstddef>
 #include <deque>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/error.hpp"
+#include "base/system/surroundings.hpp"
+#include "bench/execution/second_try.hpp"
 #include "bench/execution/thread_loop.hpp"
 #include "bench/execution/worker_pool.hpp"
 #include "results/files/byte_stream.hpp"
@@ -28,7 +33,8 @@ constexpr std::size_t kMostWaiting = 1000;
 struct BegunLoop {
   std::int64_t key = 0;
   std::string begun = {};
-  bool again = false;
+  bool again = false;      ///< after the worker process that had it crashed
+  bool disturbed = false;  ///< its surroundings failed once
 };
 
 std::string answer(const LoopWork& work, const std::string& request) {
@@ -59,6 +65,21 @@ class LoopFarm {
   void run() {
     if (work_.on_start)
       work_.on_start(done_, count_);
+    try {
+      run_all();
+    } catch (const std::exception& error) {
+      if (!is_of_surroundings(error))
+        throw;
+      store_.flush();
+      throw Interrupted(done_, count_, work_.what, what_happened(error));
+    }
+    store_.flush();
+    if (done_ < count_)
+      throw Interrupted(done_, count_, work_.what);
+  }
+
+ private:
+  void run_all() {
     if (work_.process && !missing_.empty())
       pool_.emplace(work_.thread ? work_.jobs : static_cast<int>(std::min<std::int64_t>(work_.jobs, left())),
                     [this](const std::string& request) { return answer(work_, request); });
@@ -66,12 +87,8 @@ class LoopFarm {
       run_threads();
     else if (pool_)
       work_off([this] { return left() > 0 ? std::optional(BegunLoop{missing_[next_++]}) : std::nullopt; });
-    store_.flush();
-    if (done_ < count_)
-      throw Interrupted(done_, count_, work_.what);
   }
 
- private:
   std::int64_t left() const { return std::ssize(missing_) - static_cast<std::int64_t>(next_); }
 
   void run_threads() {
@@ -87,7 +104,7 @@ class LoopFarm {
   }
 
   /// Has threads run the next `count` loops, or where worker processes wait those for which there is time.
-  void run_round(const std::vector<LoopWork::Thread>& threads, std::size_t count) {
+  void run_round(std::vector<LoopWork::Thread>& threads, std::size_t count) {
     using RoundClock = std::chrono::steady_clock;
     const RoundClock::time_point end = pool_ ? RoundClock::now() + kRound : RoundClock::time_point::max();
     std::vector<char> is_left_out(count, 0);
@@ -97,7 +114,12 @@ class LoopFarm {
         return;
       }
       const std::int64_t key = missing_[next_ + i];
-      LoopResult result = threads[thread](key);
+      LoopResult result = second_try([&] { return threads[thread](key); },
+                                     [&](const std::exception& error) {
+                                       const std::lock_guard one_at_a_time(delivery_);
+                                       tell_of_second_try(what_happened(error));
+                                       threads[thread] = work_.thread();
+                                     });
       const std::lock_guard one_at_a_time(delivery_);
       if (result.unfinished)
         waiting_.push_back({key, std::move(result.bytes)});
@@ -142,7 +164,13 @@ class LoopFarm {
   }
 
   void take(const TaskResult& result, BegunLoop task) {
-    if (!result.crashed) {
+    if (result.end == TaskEnd::surroundings) {
+      if (task.disturbed)
+        throw SurroundingsFailure(result.bytes);
+      tell_of_second_try(result.bytes);
+      task.disturbed = true;
+      waiting_.push_front(std::move(task));
+    } else if (result.end == TaskEnd::answered) {
       ByteReader reader(result.bytes);
       LoopResult done;
       std::string refused;
@@ -156,6 +184,11 @@ class LoopFarm {
       task.again = true;
       waiting_.push_front(std::move(task));
     }
+  }
+
+  void tell_of_second_try(const std::string& why) const {
+    if (work_.on_warning)
+      work_.on_warning(fmt::format("{}; what it was doing is tried once more", why));
   }
 
   void deliver(std::int64_t key, LoopResult result) {

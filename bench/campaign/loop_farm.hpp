@@ -30,8 +30,8 @@ struct LoopWork {
   /// What a worker process does with a loop, of which a thread has `begun` bytes or nothing. Empty: threads
   /// finish every loop.
   std::function<LoopResult(std::int64_t key, const std::string& begun)> process = {};
-  /// What is kept of a loop over which a worker process died, `why`; none: it is tried once more. `again`: it
-  /// was tried once more.
+  /// What is kept of a loop over which a worker process died by a fault of its own, `why`; none: it is tried
+  /// once more. `again`: it was tried once more.
   std::function<std::optional<LoopResult>(std::int64_t key, const std::string& begun, const std::string& why,
                                           bool again)>
       lost = {};
@@ -42,6 +42,8 @@ struct LoopWork {
   std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
   /// Called after each one, in the order of completion; one call at a time, from any thread.
   std::function<void(bool failed)> on_done = {};
+  /// Told of what is tried once more; one call at a time, from any thread. Empty: nobody is.
+  std::function<void(const std::string&)> on_warning = {};
 };
 
 /// Runs those of the loops that the store lacks, in this order, and keeps them in it: the one place where
@@ -49,10 +51,14 @@ struct LoopWork {
 /// threads or may crash, and are forked before the first thread starts. The store has the same bytes however
 /// many run at once, and in whatever order they are done.
 ///
+/// A loop whose surroundings fail (is_of_surroundings()), such as a worker process that is killed from
+/// outside, is run once more by a new thread or process. If they fail again, nothing is kept of it, and the
+/// run stops.
+///
 /// When a stop is requested, no more are given out, and those in worker processes, which may take minutes,
-/// are given up. Throws Interrupted when not all are done, and otherwise what the first loop in a thread
-/// throws; InputError that a worker process throws; ArchiveError of the store; std::system_error when no
-/// worker process can be made.
+/// are given up. Throws Interrupted when not all are done, with what the surroundings did where that is why,
+/// and otherwise what the first loop in a thread throws; InputError that a worker process throws;
+/// ArchiveError of the store.
 void run_missing(ShardStore& store, const std::vector<std::int64_t>& keys, const LoopWork& work);
 
 }  // namespace mpm

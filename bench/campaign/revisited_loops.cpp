@@ -31,7 +31,7 @@ void prepare_plant(const Study& study) {
 }
 
 /// Records for threads, each of which asks for the next one or one soon after it: they are read one after the
-/// other, and in memory are those that others will ask for in a moment.
+/// other, and in memory are those that others will ask for in a moment, or once more.
 class RecordsInTurn {
  public:
   /// Those with these indices, in ascending order, which there are and which must outlive it.
@@ -40,15 +40,20 @@ class RecordsInTurn {
   RecordsInTurn(const RecordsInTurn&) = delete;
   RecordsInTurn& operator=(const RecordsInTurn&) = delete;
 
-  /// Each once.
-  ExperimentRecord take(std::int64_t index) {
+  /// One that was not dropped.
+  ExperimentRecord get(std::int64_t index) {
     const std::lock_guard one_at_a_time(mutex_);
     while (read_.count(index) == 0) {
       const ExperimentRecord& record = *next_();
       if (record.draw.index == *wanted_)
         read_.emplace(*wanted_++, record);
     }
-    return std::move(read_.extract(index).mapped());
+    return read_.at(index);
+  }
+
+  void drop(std::int64_t index) {
+    const std::lock_guard one_at_a_time(mutex_);
+    read_.erase(index);
   }
 
  private:
@@ -84,7 +89,11 @@ class Revisit {
         records_(records_of(loops.campaign), experiments_of(missing)) {}
 
   LoopWork work(int jobs, const CampaignHooks& hooks) {
-    LoopWork work{.jobs = jobs, .stop = hooks.stop, .on_start = hooks.on_start, .on_done = hooks.on_done};
+    LoopWork work{.jobs = jobs,
+                  .stop = hooks.stop,
+                  .on_start = hooks.on_start,
+                  .on_done = hooks.on_done,
+                  .on_warning = hooks.on_warning};
     work.thread = [this] {
       return [this, runners = std::make_shared<LoopRunners>(loops_, "active-set")](std::int64_t key) {
         return in_thread(key, *runners);
@@ -128,12 +137,14 @@ class Revisit {
                  ? for_process
                  : loops_.make(key, *runners.calibration, std::move(record));
     }
-    ExperimentRecord record = records_.take(place.index);
+    ExperimentRecord record = records_.get(place.index);
     record.assessments.clear();
     const bool by_ipopt = by_ipopt_alone_ || record.solver.fallbacks > 0;
-    if (by_ipopt && runners.experiments.runs_loops(record))
-      return {.bytes = bytes_.to_bytes(record), .unfinished = true};
-    return loops_.make(key, runners.experiments, std::move(record));
+    LoopResult result = by_ipopt && runners.experiments.runs_loops(record)
+                            ? LoopResult{.bytes = bytes_.to_bytes(record), .unfinished = true}
+                            : loops_.make(key, runners.experiments, std::move(record));
+    records_.drop(place.index);
+    return result;
   }
 
   LoopResult in_process(std::int64_t key, const std::string& begun, LoopRunners& runners) const {

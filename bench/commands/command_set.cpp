@@ -2,19 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <new>
-#include <stdexcept>
 
 #include <CLI/CLI.hpp>
 
 namespace mpm {
-
-std::string what_happened(const std::exception& error) {
-  const bool too_much =
-      dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
-      dynamic_cast<const std::length_error*>(&error) != nullptr;  // beyond any address space
-  return too_much ? "not enough memory" : error.what();
-}
 
 CommandSet::CommandSet(CLI::App& program, std::string command_line)
     : program_(program), command_line_(std::move(command_line)) {}

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <exception>
 #include <functional>
 #include <string>
 #include <utility>
@@ -13,9 +12,6 @@ class App;
 }
 
 namespace mpm {
-
-/// What an exception says to a user: that of the standard library for too little memory says nothing.
-std::string what_happened(const std::exception& error);
 
 /// The commands of the program, and what each of them does.
 class CommandSet {

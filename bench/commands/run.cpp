@@ -16,6 +16,7 @@
 #include "analysis/study_files/study_library.hpp"
 #include "analysis/validation/study_warnings.hpp"
 #include "base/error.hpp"
+#include "base/system/surroundings.hpp"
 #include "bench/campaign/campaign_hooks.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/campaign_runner.hpp"

@@ -70,7 +70,7 @@ void Progress::warn(const std::string& text) {
 }
 
 std::string Progress::explain(const Interrupted& error) const {
-  return fmt::format("{}: {}", signals_.name(), error.what());
+  return signals_.received() ? fmt::format("{}: {}", signals_.name(), error.what()) : error.what();
 }
 
 void Progress::end_when_requested() const {

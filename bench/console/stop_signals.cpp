@@ -2,7 +2,16 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <thread>
 
+#include <poll.h>
+#include <sys/syscall.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -18,14 +27,16 @@ static_assert(std::atomic<int>::is_always_lock_free);  // else not allowed in a 
 /// Whose signals these are: a process that is forked leaves its end to its parent.
 pid_t owner = 0;
 
-constexpr itimerval kPatience{{0, 0}, {1, 700'000}};  // 1.7 s
+constexpr int kServedProcessEnded = -1;  // in the place of a signal
+constexpr std::chrono::milliseconds kPatience(1700);
+constexpr itimerval kTimer{{0, 0}, {kPatience.count() / 1000, 1000 * (kPatience.count() % 1000)}};
 constexpr itimerval kNoTimer{};
 
 void note(int signal) {
   const int error = errno;
   received_signal = signal;
   if (::getpid() == owner)
-    ::setitimer(ITIMER_REAL, &kPatience, nullptr);
+    ::setitimer(ITIMER_REAL, &kTimer, nullptr);
   errno = error;
 }
 
@@ -35,6 +46,16 @@ void give_up(int /*signal*/) {
       "there\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kWords, sizeof kWords - 1);
   ::_exit(static_cast<int>(ExitCode::not_finished));
+}
+
+/// Waits for the end of this process; -1: it has ended.
+void watch(int process) {
+  pollfd watched{process, POLLIN, 0};
+  while (process >= 0 && ::poll(&watched, 1, -1) < 0 && errno == EINTR) {
+  }
+  received_signal = kServedProcessEnded;
+  std::this_thread::sleep_for(kPatience);
+  give_up(0);
 }
 
 /// Returns what was in force before.
@@ -74,9 +95,24 @@ std::string_view StopSignals::name() const {
       return "SIGINT";
     case SIGTERM:
       return "SIGTERM";
+    case kServedProcessEnded:
+      return "the process that started this command has ended";
     default:
       return "";
   }
+}
+
+void stop_with_served_process() {
+  const char* const served = std::getenv("MPMBENCH_SERVES");
+  std::istringstream words(served != nullptr ? served : "");
+  pid_t process = 0;
+  std::string space;
+  std::error_code unknown;
+  if (!(words >> process >> space) || std::filesystem::read_symlink("/proc/self/ns/pid", unknown) != space)
+    return;
+  const auto handle = static_cast<int>(::syscall(SYS_pidfd_open, process, 0));
+  if (handle >= 0 || errno == ESRCH)
+    std::thread(watch, handle).detach();
 }
 
 }  // namespace mpm

@@ -27,7 +27,7 @@ class StopSignals {
   /// Whether one of the signals has come. From any thread.
   bool received() const;
 
-  /// "SIGINT" or "SIGTERM"; empty when none has come.
+  /// "SIGINT", "SIGTERM", or that the process that this one serves has ended; empty when nothing has come.
   std::string_view name() const;
 
  private:
@@ -35,5 +35,13 @@ class StopSignals {
   struct sigaction terminate_ {};
   struct sigaction alarm_ {};
 };
+
+/// Whoever starts this program to be served by it, and is of no use without its end, says so in the variable
+/// MPMBENCH_SERVES of the environment: "PID PID-NAMESPACE", the second one as /proc/PID/ns/pid has it. From
+/// this call on the end of that process is a request to stop, too, and this one ends 1.7 s after it as above,
+/// whether a StopSignals lives or not. A thread waits for it, which holds no lock when others fork. Nothing
+/// without the variable, and with that of another namespace. Errors: std::system_error when there is no
+/// thread.
+void stop_with_served_process();
 
 }  // namespace mpm

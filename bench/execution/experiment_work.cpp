@@ -8,6 +8,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/records/trial_record.hpp"
+#include "base/system/surroundings.hpp"
 #include "base/system/thread_clock.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "solvers/qp_solver_factory.hpp"
@@ -34,6 +35,8 @@ ExperimentOutcome ExperimentWork::run(std::int64_t index) {
     }
     outcome.samples = sampler.take();
   } catch (const std::exception& error) {
+    if (is_of_surroundings(error))
+      throw;
     outcome = {};
     outcome.record = lost_record(study_, index, error.what());
   }

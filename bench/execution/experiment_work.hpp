@@ -19,7 +19,8 @@ class ExperimentWork {
   ExperimentWork(const Study& study, const Study& basis_study, const BasisCase& basis,
                  const RunOptions& options, const QpSolverFactory& factory);
 
-  /// Experiment `index` without its audits. An exception makes a record `failed` with its text.
+  /// Experiment `index` without its audits. An exception makes a record `failed` with its text, unless the
+  /// surroundings failed (is_of_surroundings()): that is thrown.
   ExperimentOutcome run(std::int64_t index);
 
   /// Audits the samples of an outcome. Calls Ipopt.

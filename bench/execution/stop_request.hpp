@@ -19,9 +19,11 @@ inline bool requested(const StopRequest& stop) {
 /// Work was stopped before its end.
 class Interrupted : public std::runtime_error {
  public:
-  /// "stopped when `done` of `count` experiments were done"
-  Interrupted(std::int64_t done, std::int64_t count, std::string_view what = "experiments")
-      : std::runtime_error(fmt::format("stopped when {} of {} {} were done", done, count, what)) {}
+  /// "stopped when `done` of `count` experiments were done: `why`"
+  Interrupted(std::int64_t done, std::int64_t count, std::string_view what = "experiments",
+              std::string_view why = "")
+      : std::runtime_error(fmt::format("stopped when {} of {} {} were done{}{}", done, count, what,
+                                       why.empty() ? "" : ": ", why)) {}
 };
 
 }  // namespace mpm

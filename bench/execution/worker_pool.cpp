@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <exception>
 #include <stdexcept>
 #include <system_error>
@@ -19,42 +18,42 @@
 #include <unistd.h>
 
 #include "base/system/socket_bytes.hpp"
+#include "base/system/surroundings.hpp"
 
 namespace mpm {
 namespace {
 
 /// Header of a message: its length and, for an answer, whether it is one.
 struct Header {
-  std::int64_t failed;
+  TaskEnd end;
   std::int64_t size;
 };
 
-bool send_message(int socket, const std::string& bytes, bool failed) {
-  const Header header{failed ? 1 : 0, static_cast<std::int64_t>(bytes.size())};
+bool send_message(int socket, const std::string& bytes, TaskEnd end = TaskEnd::answered) {
+  const Header header{end, static_cast<std::int64_t>(bytes.size())};
   return send_bytes(socket, &header, sizeof header) && send_bytes(socket, bytes.data(), bytes.size());
 }
 
-bool receive_message(int socket, std::string& bytes, bool& failed) {
+bool receive_message(int socket, std::string& bytes, TaskEnd& end) {
   Header header{};
   if (receive_bytes(socket, &header, sizeof header) != Received::all)
     return false;
-  failed = header.failed != 0;
+  end = header.end;
   bytes.resize(static_cast<std::size_t>(header.size));
   return receive_bytes(socket, bytes.data(), bytes.size()) == Received::all;
 }
 
 [[noreturn]] void work_until_closed(int socket, const WorkerPool::Work& work) {
   std::string request, answer;
-  bool failed = false;
-  while (receive_message(socket, request, failed)) {
+  TaskEnd end = TaskEnd::answered;
+  while (receive_message(socket, request, end)) {
     try {
       answer = work(request);
-      failed = false;
     } catch (const std::exception& error) {
-      answer = error.what();
-      failed = true;
+      answer = what_happened(error);
+      end = is_of_surroundings(error) ? TaskEnd::surroundings : TaskEnd::crashed;
     }
-    if (!send_message(socket, answer, failed))
+    if (!send_message(socket, answer, end))
       break;
   }
   // Not exit(): destructors and buffers belong to the parent.
@@ -105,15 +104,16 @@ class WorkerPool::Worker {
   /// A worker that is gone shows when its answer is read.
   void start(std::int64_t task, const std::string& request) {
     task_ = task;
-    send_message(socket_, request, false);
+    send_message(socket_, request);
   }
 
   /// The answer to the task under way; blocks until it is whole.
   TaskResult finish() {
-    TaskResult result{std::exchange(task_, kNoTask), true, {}};
-    if (!receive_message(socket_, result.bytes, result.crashed)) {
-      result.crashed = true;
-      result.bytes = how_it_ended();
+    TaskResult result{std::exchange(task_, kNoTask), TaskEnd::answered, {}};
+    if (!receive_message(socket_, result.bytes, result.end)) {
+      const ProcessEnd end = how_it_ended();
+      result.end = end.from_outside ? TaskEnd::surroundings : TaskEnd::crashed;
+      result.bytes = fmt::format("worker process {}", end.text);
     }
     return result;
   }
@@ -125,14 +125,12 @@ class WorkerPool::Worker {
  private:
   static constexpr std::int64_t kNoTask = -1;
 
-  std::string how_it_ended() {
+  ProcessEnd how_it_ended() {
     int status = 0;
     while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
     }
     pid_ = -1;
-    return WIFSIGNALED(status) ? fmt::format("worker process ended by signal {} ({})", WTERMSIG(status),
-                                             ::strsignal(WTERMSIG(status)))
-                               : fmt::format("worker process ended with code {}", WEXITSTATUS(status));
+    return process_end(status);
   }
 
   pid_t pid_ = -1;
@@ -189,7 +187,7 @@ std::optional<TaskResult> WorkerPool::wait_for(std::chrono::milliseconds longest
 
 TaskResult WorkerPool::finish(std::size_t position) {
   TaskResult result = workers_[position]->finish();
-  if (!workers_[position]->alive()) {
+  if (!workers_[position]->alive() || result.end == TaskEnd::surroundings) {  // whose state nobody knows
     workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(position));
     workers_.push_back(std::make_unique<Worker>(work_, workers_));
   }
@@ -199,7 +197,7 @@ TaskResult WorkerPool::finish(std::size_t position) {
 std::optional<TaskResult> next_finding(WorkerPool& pool, const StopRequest& stop) {
   constexpr std::chrono::milliseconds kLook(100);
   std::optional<TaskResult> result = pool.wait_for(kLook);
-  if (result && result->crashed && requested(stop))
+  if (result && result->end != TaskEnd::answered && requested(stop))
     return std::nullopt;
   return result;
 }

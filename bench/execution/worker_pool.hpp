@@ -12,10 +12,16 @@
 
 namespace mpm {
 
+enum class TaskEnd : std::int64_t {
+  answered,
+  crashed,      ///< the work threw, or its process ended, by a fault of its own
+  surroundings  ///< neither: is_of_surroundings(), ProcessEnd::from_outside
+};
+
 /// What became of one task.
 struct TaskResult {
   std::int64_t id;
-  bool crashed;       ///< the worker process ended before it answered
+  TaskEnd end;
   std::string bytes;  ///< the answer, or what is known of the end of the worker
 };
 
@@ -24,13 +30,14 @@ struct TaskResult {
 /// Processes and not threads, because Ipopt with sequential MUMPS must not run in two threads of one process.
 /// The workers are forked by the constructor from the calling process, which must have no other thread at
 /// that time; they inherit its memory, so `work` may refer to anything that the caller has prepared. A worker
-/// that crashes costs the task it was working on and is replaced. Workers die with the calling process.
+/// that crashes, or whose surroundings fail, costs the task it was working on and is replaced. Workers die
+/// with the calling process.
 class WorkerPool {
  public:
   using Work = std::function<std::string(const std::string& request)>;
 
-  /// `work` runs in a worker; an exception in it is delivered as a crash with its text.
-  /// Throws std::system_error when no process or socket can be made.
+  /// `work` runs in a worker; an exception in it is delivered as such an end, with its text.
+  /// Throws std::system_error when no process or socket can be made, as do the members that replace one.
   WorkerPool(int jobs, Work work);
   ~WorkerPool();  ///< ends the workers, whatever they are doing
   WorkerPool(const WorkerPool&) = delete;

@@ -1,5 +1,6 @@
 #include "bench/parts/launcher.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 
@@ -30,28 +31,25 @@ constexpr std::int64_t kMostTasks = std::numeric_limits<std::int32_t>::max();
 struct Launcher {
   const char* name;
   const char* number;
-  const char* size;    ///< how many there are; null: it does not say
-  std::int64_t first;  ///< of the numbers
+  const char* size;  ///< how many there are; null: it does not say
 };
 
-/// Those that start processes side by side.
-constexpr Launcher kRanks[] = {
-    {"rank {} of {} of Open MPI", "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", 0},
-    {"rank {} of {} of MPI", "PMI_RANK", "PMI_SIZE", 0},
-    {"task {} of {} of srun", "SLURM_PROCID", "SLURM_STEP_NUM_TASKS", 0}};
+/// Those that start processes side by side, which they number from 0 on.
+constexpr Launcher kRanks[] = {{"rank {} of {} of Open MPI", "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
+                               {"rank {} of {} of MPI", "PMI_RANK", "PMI_SIZE"},
+                               {"task {} of {} of srun", "SLURM_PROCID", "SLURM_STEP_NUM_TASKS"}};
 
-/// Those that start jobs, each of which may be several processes. An array is whole when its last number is
-/// how many tasks it has.
-constexpr Launcher kJobs[] = {
-    {"task {} of {} of a Slurm array", "SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_MAX", 1},
-    {"pod {} of {} of a Kubernetes job", "JOB_COMPLETION_INDEX", nullptr, 0}};
+/// Those that start jobs, each of which may be several processes.
+constexpr Launcher kArray{"task {} of {} of a Slurm array", "SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT"};
+constexpr Launcher kPods{"pod {} of {} of a Kubernetes job", "JOB_COMPLETION_INDEX", nullptr};
 
-PartNumber part_by(const Launcher& launcher, std::int64_t number, std::int64_t of) {
-  const std::int64_t place = number - launcher.first;
-  if (place < 0 || place >= of || of > kMostTasks)
+/// Of tasks that are numbered from `first` on, `step` apart.
+PartNumber part_by(const Launcher& launcher, std::int64_t number, std::int64_t of, std::int64_t first = 0,
+                   std::int64_t step = 1) {
+  const std::int64_t place = (number - first) / step;
+  if (number < first || place >= of || of > kMostTasks)
     throw InputError(fmt::format("--shard auto: environment variable {}", launcher.number),
-                     fmt::format("{} of {}", number, of),
-                     fmt::format("{} to {}", launcher.first, of - 1 + launcher.first));
+                     fmt::format("{} of {}", number, of), fmt::format("{} to {}", first, of - 1 + first));
   return {place + 1, of, fmt::format(fmt::runtime(launcher.name), place + 1, of)};
 }
 
@@ -64,22 +62,38 @@ std::optional<PartNumber> rank_of(const Environment& environment) {
   return std::nullopt;
 }
 
+[[noreturn]] void refuse_size(const Launcher& launcher, std::int64_t number) {
+  throw InputError("--shard auto",
+                   fmt::format("{} = {}, without the number of tasks", launcher.number, number),
+                   "a whole array, sbatch --array=1-N; or --shard auto/N with the number of tasks or the "
+                   "`completions` of the job");
+}
+
+/// A whole array, A-B or A-B:STEP, is counted as it is. Where only some of N tasks run, they have the numbers
+/// of an array 1-N, or of one from 0 on when task 0 is among them.
+PartNumber array_task(const Environment& environment, std::int64_t number,
+                      const std::optional<std::int64_t>& given) {
+  const auto count = number_of(environment, kArray.size);
+  const std::int64_t first = number_of(environment, "SLURM_ARRAY_TASK_MIN").value_or(1);
+  const std::int64_t last = number_of(environment, "SLURM_ARRAY_TASK_MAX").value_or(0);
+  const std::int64_t step =
+      std::max<std::int64_t>(number_of(environment, "SLURM_ARRAY_TASK_STEP").value_or(1), 1);
+  const bool is_whole = count && *count <= kMostTasks && step <= kMostTasks &&
+                        last - first == (*count - 1) * step && (number - first) % step == 0;
+  if (is_whole && given.value_or(*count) == *count)
+    return part_by(kArray, number, *count, first, step);
+  if (!given)
+    refuse_size(kArray, number);
+  return part_by(kArray, number, *given, std::min<std::int64_t>(first, 1));
+}
+
 std::optional<PartNumber> job_of(const Environment& environment, const std::optional<std::int64_t>& given) {
-  for (const Launcher& launcher : kJobs) {
-    const auto number = number_of(environment, launcher.number);
-    if (!number)
-      continue;
-    const auto size = given                      ? given
-                      : launcher.size != nullptr ? number_of(environment, launcher.size)
-                                                 : std::nullopt;
-    if (!size || (!given && size != number_of(environment, "SLURM_ARRAY_TASK_COUNT")))
-      throw InputError("--shard auto",
-                       fmt::format("{} = {}, without the number of tasks", launcher.number, *number),
-                       "a whole array, sbatch --array=1-N; or --shard auto/N with the number of tasks or the "
-                       "`completions` of the job");
-    return part_by(launcher, *number, *size);
-  }
-  return std::nullopt;
+  if (const auto number = number_of(environment, kArray.number))
+    return array_task(environment, *number, given);
+  const auto number = number_of(environment, kPods.number);
+  if (number && !given)
+    refuse_size(kPods, *number);
+  return number ? std::optional(part_by(kPods, *number, *given)) : std::nullopt;
 }
 
 PartNumber launched(const Environment& environment, const std::optional<std::int64_t>& given) {

@@ -32,9 +32,11 @@ std::optional<std::string> process_environment(const char* name);
 ///
 /// Launchers, by the variables that they set: first one that counts its tasks, of Open MPI
 /// (OMPI_COMM_WORLD_RANK, _SIZE), MPICH and others with its process manager (PMI_RANK, PMI_SIZE), Slurm's
-/// srun (SLURM_PROCID, SLURM_STEP_NUM_TASKS); around it the tasks of a Slurm array from 1 on
-/// (SLURM_ARRAY_TASK_ID) or of an indexed Kubernetes job (JOB_COMPLETION_INDEX). A task of an array that
-/// starts R processes has R of the R N parts. The program is not linked with any of them.
+/// srun (SLURM_PROCID, SLURM_STEP_NUM_TASKS); around it the tasks of a Slurm array (SLURM_ARRAY_TASK_ID,
+/// _MIN, _MAX, _STEP, _COUNT) or of an indexed Kubernetes job (JOB_COMPLETION_INDEX). A whole array A-B:STEP
+/// is counted as it is; with auto/N where only some of N tasks run, they are those of an array 1-N, or
+/// 0-(N-1) when task 0 runs. A task of an array that starts R processes has R of the R N parts. The program
+/// is not linked with any of them.
 ///
 /// Throws InputError for another text, for `auto` without a launcher, and for an array whose size is not
 /// known.

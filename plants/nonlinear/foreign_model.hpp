@@ -13,7 +13,8 @@
 namespace mpm {
 
 /// A simulation that somebody else wrote, from sample to sample, in the variables of its plant. Errors of all
-/// members: ForeignFailure, after which it has to be started again.
+/// members: ForeignFailure, after which it has to be started again, and those of the surroundings
+/// (is_of_surroundings()), after which it is of no use.
 class ForeignSimulation {
  public:
   virtual ~ForeignSimulation() = default;

@@ -69,7 +69,7 @@ def run(words, *, text=None, broker=None, quiet=False):
     (methods.Broker). Warnings become ProgramWarning; `quiet` leaves them and the progress out. Raises Error, and what a
     method of this process raises."""
     watch = watcher(quiet)
-    environment = dict(os.environ) | (broker.environment if broker else {})
+    environment = os.environ | served() | (broker.environment if broker else {})
     process = subprocess.Popen([program(), *map(str, words)], env=environment,
                                stdin=subprocess.DEVNULL if text is None else subprocess.PIPE, stdout=subprocess.PIPE,
                                stderr=watch.writing_end, start_new_session=True)
@@ -90,6 +90,11 @@ def run(words, *, text=None, broker=None, quiet=False):
         kind = {2: InputError, 3: Unfinished}.get(process.returncode, Error)
         raise kind(message(watch.text or said), process.returncode)
     return said
+
+
+def served():
+    """What tells the program to end with this process, however this one ends and whoever stands between."""
+    return {"MPMBENCH_SERVES": f"{os.getpid()} {os.readlink('/proc/self/ns/pid')}"}
 
 
 def talk(process, watch, text, broker):
@@ -135,13 +140,13 @@ def talk(process, watch, text, broker):
 
 
 def stop(process):
-    """Ends the program as Ctrl-C does: it keeps what is done."""
+    """Ends the program as Ctrl-C does, whoever stands between: it keeps what is done."""
     if process.poll() is None:
-        process.send_signal(signal.SIGINT)
+        os.killpg(process.pid, signal.SIGINT)
         try:
             process.wait(timeout=5)
         except subprocess.TimeoutExpired:
-            process.kill()
+            os.killpg(process.pid, signal.SIGKILL)
             process.wait()
 
 

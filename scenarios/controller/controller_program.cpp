@@ -143,25 +143,25 @@ class ProgramController final : public Controller {
     acting_ = u;
     Eigen::VectorXd input(u.size() + d.size());
     input << u, d;
-    guarded([&] {
-      if (!running_)
-        running_ = talks_->take();
-      if (running_->context != context_) {
-        refuse_unknown_keys(asked(running_->talk.ask(ProgramJson::parse(context_))), {});
-        running_->context = context_;
+    guarded([&](std::unique_ptr<ControllerTalks::Running>& running) {
+      if (!running)
+        running = talks_->take();
+      if (running->context != context_) {
+        refuse_unknown_keys(asked(running->talk.ask(ProgramJson::parse(context_))), {});
+        running->context = context_;
       }
       const Eigen::VectorXd y = G_.steady_output(input);
       const ProgramJson start{
           {"call", "reset"}, {"u", vector_json(u)}, {"d", vector_json(d)}, {"y", vector_json(y)}};
-      refuse_unknown_keys(asked(running_->talk.ask(start)), {});
+      refuse_unknown_keys(asked(running->talk.ask(start)), {});
     });
   }
 
   const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
                           const Eigen::Ref<const Eigen::VectorXd>& d) override {
     move_.status = ControlStatus::ok;
-    guarded([&] {
-      if (!running_)
+    guarded([&](const std::unique_ptr<ControllerTalks::Running>& running) {
+      if (!running)
         throw InputError("a step of a program that was not reset");
       ProgramJson question{{"call", "step"},
                            {"y", vector_json(y)},
@@ -173,7 +173,7 @@ class ProgramController final : public Controller {
         question["mv_off"] = vector_json(off_.position);
         question["cv_off"] = std::vector<bool>(off_.cvs.begin(), off_.cvs.end());
       }
-      take_move(asked(running_->talk.ask(question)));
+      take_move(asked(running->talk.ask(question)));
     });
     acting_ = move_.u;
     return move_;
@@ -197,19 +197,20 @@ class ProgramController final : public Controller {
   std::string failure() const override { return failure_; }
 
  private:
-  /// What the program does wrong ends the loop, and the program with it: it may be out of step.
+  /// What the program does wrong ends the loop, and whatever goes wrong the program: it may be out of step.
   template <class Work>
   void guarded(Work work) {
     if (failure_.empty()) {
+      std::unique_ptr<ControllerTalks::Running> running = std::move(running_);
       try {
-        work();
+        work(running);
+        running_ = std::move(running);
         return;
       } catch (const ChildFailure& error) {
         failure_ = error.what();
       } catch (const InputError& error) {
         failure_ = error.what();
       }
-      running_.reset();
     }
     move_.status = ControlStatus::failed;
   }

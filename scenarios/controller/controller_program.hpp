@@ -34,8 +34,9 @@ class ControllerProgram {
   bool runs_on_model() const;
 
   /// A controller of `plant` with this tuning, told of unit step responses of `samples` samples. What goes
-  /// wrong with the program shows as ControlStatus::failed. `factory` makes the solver of nominal_target(),
-  /// which is that of Mpc; what the program answers is held within the hard limits of the MVs.
+  /// wrong with the program shows as ControlStatus::failed; what goes wrong with its surroundings
+  /// (is_of_surroundings()) is thrown. `factory` makes the solver of nominal_target(), which is that of Mpc;
+  /// what the program answers is held within the hard limits of the MVs.
   std::unique_ptr<Controller> controller(const PlantModel& plant, const MpcOptions& options,
                                          Eigen::Index samples, const QpSolverFactory& factory) const;
 

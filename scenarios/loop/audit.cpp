@@ -60,7 +60,8 @@ void AuditSampler::observe(const Controller& controller) {
   samples_.push_back(std::move(sample));
 }
 
-Auditor::Auditor(const Study& study, const QpSolverFactory& ipopt) {
+Auditor::Auditor(const Study& study, const QpSolverFactory& unlimited) {
+  const QpSolverFactory ipopt = with_time_limit(unlimited, study.controller.solver_time_limit);
   // The controller makes the structures; its own solvers are never asked.
   const Mpc controller(study.plant.G, study.mv_count(), study.controller, ipopt);
   if (const std::optional<SolvedQp> targets = controller.target_problem())

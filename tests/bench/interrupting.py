@@ -1,4 +1,5 @@
-"""What tests of interrupted runs share: the shards that are there, and a run that is stopped when it has written some."""
+"""What tests of interrupted runs share: the shards that are there, a run that is stopped when it has written some, and the
+processes that live on."""
 
 import os
 import pathlib
@@ -6,6 +7,21 @@ import signal
 import time
 
 PATIENCE = 300  # s, for a machine that is busy with other things
+MARK = "MPMBENCH_TRIAL"  # variable of the environment that marks the processes of a trial
+
+
+def living(mark):
+    """Processes with this mark that still live: (number, command)."""
+    wanted = f"{MARK}={mark}".encode()
+    found = []
+    for entry in pathlib.Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and wanted in (entry / "environ").read_bytes().split(b"\0"):
+                if "\nState:\tZ" not in (entry / "status").read_text():
+                    found.append((int(entry.name), (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()))
+        except (OSError, ValueError):
+            continue  # it has just ended, or is somebody else's
+    return found
 
 
 def shard_files(*places):

@@ -104,13 +104,34 @@ TEST_CASE("shard: auto takes rank and size from whatever launched it") {
              Contains("task 2 of 3 of a Slurm array") && Contains("task 4 of 4"));
 }
 
+TEST_CASE("shard: a whole Slurm array counts from wherever it begins, by its step") {
+  for (const std::int64_t first : {0, 1, 3, 100})
+    for (const std::int64_t step : {1, 2, 7})
+      for (const std::int64_t of : {1, 2, 4, 9})
+        for (std::int64_t place = 0; place < of; ++place) {
+          const auto text = [&](std::int64_t at) { return std::to_string(first + at * step); };
+          Variables array = array_task(text(place), text(0), text(of - 1), std::to_string(of));
+          array["SLURM_ARRAY_TASK_STEP"] = std::to_string(step);
+          CHECK(shard("auto", array) == Piece{place + 1, of});
+          CHECK(shard(fmt::format("auto/{}", of), array) == Piece{place + 1, of});
+        }
+  CHECK(shard("auto", array_task("0", "0", "3", "4")) == Piece{1, 4});
+  // Some tasks of N once more: those of an array 1-N, or of 0-(N-1) when task 0 is one of them.
+  CHECK(shard("auto/8", array_task("3", "3", "5", "2")) == Piece{3, 8});
+  CHECK(shard("auto/8", array_task("8", "8", "8", "1")) == Piece{8, 8});
+  CHECK(shard("auto/8", array_task("0", "0", "5", "2")) == Piece{1, 8});
+  CHECK(shard("auto/8", array_task("5", "0", "5", "2")) == Piece{6, 8});
+}
+
 TEST_CASE("shard: where a launcher does not say enough, auto says what it needs") {
   CHECK_THROWS_WITH(shard("auto"), Contains("no launcher") && Contains("mpirun"));
   CHECK_THROWS_WITH(shard("auto", {{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}}), Contains("no launcher"));
   CHECK_THROWS_WITH(shard("auto", array_task("5", "3", "5", "2")), Contains("auto/N"));
-  CHECK_THROWS_WITH(shard("auto", array_task("0", "0", "7", "8")), Contains("--array=1-N"));
   CHECK_THROWS_WITH(shard("auto", array_task("3", "1", "9", "5")), Contains("--array=1-N"));  // 1-9:2
   CHECK_THROWS_WITH(shard("auto/8", array_task("9", "1", "9", "9")), Contains("1 to 8"));
+  CHECK_THROWS_WITH(shard("auto/8", array_task("8", "0", "8", "9")), Contains("0 to 7"));
+  CHECK_THROWS_WITH(shard("auto", array_task("4", "0", "9223372036854775807", "9223372036854775807")),
+                    Contains("--array=1-N"));
   CHECK_THROWS_WITH(shard("auto", {{"JOB_COMPLETION_INDEX", "7"}}), Contains("auto/N"));
   CHECK_THROWS_WITH(shard("auto/7", {{"JOB_COMPLETION_INDEX", "7"}}), Contains("0 to 6"));
   CHECK_THROWS_WITH(shard("auto/3", {{"PMI_RANK", "0"}, {"PMI_SIZE", "4"}}), Contains("auto/4"));

@@ -1,6 +1,7 @@
 #include <chrono>
 #include <functional>
 #include <map>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include "base/system/surroundings.hpp"
 #include "bench/execution/worker_pool.hpp"
 
 namespace {
@@ -36,7 +38,7 @@ TEST_CASE("worker pool: every task is answered once, in other processes") {
     const auto results = run_all(20, jobs, [](std::int64_t i) { return std::to_string(i * i); });
     REQUIRE(results.size() == 20);
     for (const auto& [index, result] : results) {
-      CHECK_FALSE(result.crashed);
+      CHECK(result.end == TaskEnd::answered);
       CHECK(result.bytes == std::to_string(index * index));
     }
   }
@@ -52,14 +54,24 @@ TEST_CASE("worker pool: a killed worker costs its task alone") {
       ::_exit(9);
     if (i == 9)
       throw std::runtime_error("not today");
+    if (i == 10)
+      ::raise(SIGSEGV);
+    if (i == 4)
+      throw std::bad_alloc();
+    if (i == 5)
+      throw SurroundingsFailure("nobody there");
     return std::string(100000, static_cast<char>('a' + i));  // longer than a socket buffer
   });
   REQUIRE(results.size() == 12);
   for (const auto& [index, result] : results)
-    CHECK(result.crashed == (index == 3 || index == 7 || index == 9));
+    CHECK(result.end == (index >= 3 && index <= 5                  ? TaskEnd::surroundings
+                         : index == 7 || index == 9 || index == 10 ? TaskEnd::crashed
+                                                                   : TaskEnd::answered));
   CHECK(results.at(3).bytes.find("signal 9") != std::string::npos);
   CHECK(results.at(7).bytes.find("code 9") != std::string::npos);
   CHECK(results.at(9).bytes == "not today");
+  CHECK(results.at(4).bytes == "not enough memory");
+  CHECK(results.at(5).bytes == "nobody there");
   CHECK(results.at(11).bytes == std::string(100000, 'l'));
 }
 

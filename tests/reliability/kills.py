@@ -53,12 +53,13 @@ def trial(bench, case, draws):
         ended = "had finished"
     else:
         ended = "killed" if code < 0 else f"exit code {code}"
-        worker = way == "SIGKILL at a call" and code == 3  # it struck a worker, whose parent says so
+        # it struck a worker, or the program that a script has started, and the parent says so
+        worker = way == "SIGKILL at a call" and code == (1 if case.script else 3)
         if code > 0 and not (code == 3 and (way in ("SIGTERM", "SIGINT") or worker)):
             findings.append(f"exit code {code}: {error.strip()}")
     findings += bench.half_written(case, old)
     findings += bench.goes_on(case)
-    return way, ended, findings + bench.left_temporary()
+    return way, ended, findings + bench.left_temporary(case)
 
 
 def main():

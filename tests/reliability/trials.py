@@ -20,10 +20,10 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "bench"))
 from archives import contents  # noqa: E402
+from interrupting import MARK, living  # noqa: E402
 
 PATIENCE = 300  # s, for a machine that is busy with other things
 LEAVE = 10  # s in which the processes of a command that was killed must have ended
-MARK = "MPMBENCH_TRIAL"
 
 SWEEP = """[sweep]
 name = "noise"
@@ -59,6 +59,18 @@ for line in sys.stdin:
         told = json.loads(line)
         print(json.dumps({"number": told["number"], **({"flagged": True} if told["ask"] == "loop" else {})}), flush=True)
 """
+SERVED = """import sys
+import mpmbench
+
+
+@mpmbench.method(needs=["benchmark"])
+def ours(loop):
+    score = ((loop.y - loop.y_sim) ** 2).mean() / ((loop.benchmark.y - loop.benchmark.y_sim) ** 2).mean()
+    return {"flagged": score > 1.5, "score": score}
+
+
+mpmbench.open(sys.argv[1]).compare(ours, output=sys.argv[-1], jobs=1, quiet=True, shard_interval=0)
+"""
 FMU_PLANT = """
 [plant.fmu]
 file = "tank.fmu"
@@ -92,10 +104,11 @@ def arguments(description, count):
 
 
 class Case:
-    """A command: its words before `-o OUTPUT`, those that go on with it, and what must lie in its folder before it."""
+    """A command: its words before `-o OUTPUT`, those that go on with it, and what must lie in its folder before it. One
+    that is a script of Python serves the program."""
 
-    def __init__(self, name, words, output, again=(), setup=None, old=True):
-        self.name, self.words, self.output = name, [str(word) for word in words], output
+    def __init__(self, name, words, output, again=(), setup=None, old=True, script=None):
+        self.name, self.words, self.output, self.script = name, [str(word) for word in words], output, script
         self.again, self.setup, self.old = [str(word) for word in again], setup, old
         self.reference, self.listing, self.said, self.seconds, self.calls = None, None, "", 0.0, 0
 
@@ -143,7 +156,7 @@ class Bench:
     def make_cases(self, fmu):
         inputs = self.inputs
         study = shutil.copy(self.source / "scenarios/studies/wood-berry.toml", inputs / "study.toml")
-        for name, content in (("sweep.toml", SWEEP), ("suite.toml", SUITE), ("mine.py", METHOD)):
+        for name, content in (("sweep.toml", SWEEP), ("suite.toml", SUITE), ("mine.py", METHOD), ("served.py", SERVED)):
             (inputs / name).write_text(content)
         (inputs / "mine.toml").write_text(
             f"[method.mine]\ncommand = ['{sys.executable}', '-S', '-E', '{inputs / 'mine.py'}']\n")
@@ -168,6 +181,7 @@ class Bench:
             Case("suite", ["suite", inputs / "suite.toml", "--jobs", 1, "--quiet"], "out", old=False),
             Case("compare", ["compare", archive, "--methods", "sse,mqi-channels", "--jobs", 1, "--quiet",
                              "--shard-interval", 0], "out.h5"),
+            Case("Python, compare", [archive], "out.h5", script=inputs / "served.py"),
             Case("reproduce", ["reproduce", "chapter7", "--jobs", 1, "--quiet"], "out.html"),
             Case("reproduce --shard", ["reproduce", "chapter7", "--jobs", 1, "--quiet", "--shard", "1/2"], "out.html",
                  old=False),
@@ -193,7 +207,8 @@ class Bench:
     def command(self, case, again=False):
         output = self.work / case.output
         words = [word.format(output=output, folder=self.work) for word in case.words]
-        return [self.program, *words, *(case.again if again else []), *([] if case.name == "merge" else ["-o", str(output)])]
+        program = [sys.executable, "-B", str(case.script)] if case.script else [self.program]
+        return [*program, *words, *(case.again if again else []), *([] if case.name == "merge" else ["-o", str(output)])]
 
     def fresh(self, case, old=None):
         """An empty folder, or one with an old output."""
@@ -207,7 +222,9 @@ class Bench:
         self.mark = f"{os.getpid()}.{self.number}"
         return subprocess.Popen(self.command(case, again), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                 stdin=subprocess.DEVNULL, cwd=self.work, start_new_session=True,
-                                env={**os.environ, MARK: self.mark, "TMPDIR": str(self.temporary), **environment})
+                                env={**os.environ, MARK: self.mark, "TMPDIR": str(self.temporary),
+                                     "PYTHONPATH": str(self.source / "python"), "MPMBENCH_PROGRAM": self.program,
+                                     **environment})
 
     def start_with_fault(self, case, call, kind, nth, **environment):
         """The command, with the nth of these calls failing or ending it (faults.c); none for 0. A close may be that of
@@ -238,16 +255,7 @@ class Bench:
 
     def survivors(self):
         """Processes of the last command that still live."""
-        wanted = f"{MARK}={self.mark}".encode()
-        found = []
-        for entry in pathlib.Path("/proc").iterdir():
-            try:
-                if entry.name.isdigit() and wanted in (entry / "environ").read_bytes().split(b"\0"):
-                    if "\nState:\tZ" not in (entry / "status").read_text():
-                        found.append((int(entry.name), (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()))
-            except (OSError, ValueError):
-                continue  # it has just ended, or is somebody else's
-        return found
+        return living(self.mark)
 
     def left_processes(self):
         end = time.monotonic() + LEAVE
@@ -293,9 +301,9 @@ class Bench:
                      if name in listing and content_of(listing[name]) != found]
         return findings + self.left_processes()
 
-    def left_temporary(self):
-        """What lies in the folder for temporary files, which is emptied."""
-        left = sorted(path.name for path in self.temporary.iterdir())
+    def left_temporary(self, case):
+        """What lies in the folder for temporary files, which is emptied; Python leaves there what it cannot remove."""
+        left = sorted(path.name for path in self.temporary.iterdir() if not case.script)
         for path in self.temporary.iterdir():
             shutil.rmtree(path) if path.is_dir() else path.unlink()
         return [f"in TMPDIR: {re.sub('[A-Za-z0-9]{6}$', 'XXXXXX', name)}" for name in left]

@@ -60,6 +60,23 @@ TEST_CASE("the iteration limit is reported", "[ipopt]") {
   CHECK(solver.solve(qp.data).status == QpStatus::iteration_limit);
 }
 
+TEST_CASE("the limit of time is one of each problem, all its runs together", "[ipopt]") {
+  const bool working_set = GENERATE(true, false);
+  const NamedQp qp = half_plane();
+  const IpoptOptions options{.working_set = working_set, .rows_at_once = 0};
+  const QpResult expected = IpoptSolver(qp.structure, options).solve(qp.data);
+  REQUIRE(expected.status == QpStatus::solved);
+  IpoptSolver solver(qp.structure, options);
+  for (const double seconds : {60.0, 0.0, 1e-9, kInfinity, 60.0}) {
+    solver.set_time_limit(seconds);
+    solver.reset();
+    const QpResult& result = solver.solve(qp.data);
+    CHECK(result.status == (seconds < 1.0 ? QpStatus::time_limit : QpStatus::solved));
+    if (seconds > 1.0)
+      CHECK(result.x == expected.x);  // a limit that is not reached changes no bit
+  }
+}
+
 TEST_CASE("an ipopt.opt in the current folder is not read", "[ipopt]") {
   const TemporaryFolder folder;
   std::ofstream("ipopt.opt") << "max_iter 1\n";

@@ -170,6 +170,20 @@ TEST_CASE("a solver that fails is reported and the MVs stay", "[mpc]") {
   CHECK(move.u == u);
 }
 
+TEST_CASE("a controller whose problem takes Ipopt too long has failed, and names the key", "[mpc]") {
+  MpcOptions options = small_options();
+  options.solver_time_limit = 1e-9;
+  Mpc controller = small_controller("ipopt", options);
+  controller.reset(Eigen::Vector2d(0, 0), md(0));
+  CHECK(controller.step(Eigen::Vector2d(0, 0), md(0)).status == ControlStatus::failed);
+  CHECK(controller.failure() ==
+        "the solver gave no answer: Ipopt needed more than "
+        "controller.solver_time_limit, 1e-09 s, for a problem");
+  // The other method has no use for it.
+  Mpc other = small_controller("active-set", options);
+  CHECK(run_small_loop(other, {}, 5).ok);
+}
+
 TEST_CASE("controller statuses have names", "[mpc]") {
   CHECK(to_string(ControlStatus::ok) == "ok");
   CHECK(to_string(ControlStatus::infeasible) == "infeasible");

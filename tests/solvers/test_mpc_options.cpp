@@ -87,6 +87,8 @@ TEST_CASE("costs that are no numbers are refused", "[options]") {
   for (const double bad : {0.0, -1.0, kNaN, kInfinity})
     CHECK_THAT(refusal([bad](Options& o) { o.target_violation_cost = bad; }),
                StartsWith("target_violation_cost"));
+  for (const double bad : {0.0, -1.0, kNaN})
+    CHECK_THAT(refusal([bad](Options& o) { o.solver_time_limit = bad; }), StartsWith("solver_time_limit"));
 }
 
 TEST_CASE("the choices have names", "[options]") {

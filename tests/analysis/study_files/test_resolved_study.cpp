@@ -404,7 +404,7 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
       INFO("[" << name << "] " << key);
       CHECK(written.count({name, key}) != without_value.count({name, key}));
     }
-  for (const char* key : {"weight_convention", "slack", "target_violation_cost"})
+  for (const char* key : {"weight_convention", "slack", "target_violation_cost", "solver_time_limit"})
     CHECK(written.count({"controller", key}) == 1);
 }
 

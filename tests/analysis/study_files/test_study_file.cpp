@@ -69,6 +69,7 @@ TEST_CASE("keys that are left out have the defaults of Study", "[study_file]") {
   CHECK(study.controller.weight_convention == defaults.controller.weight_convention);
   CHECK(study.controller.slack_form == defaults.controller.slack_form);
   CHECK(study.controller.target_violation_cost == defaults.controller.target_violation_cost);
+  CHECK(study.controller.solver_time_limit == defaults.controller.solver_time_limit);
   CHECK(study.mismatch.parameter_weight == defaults.mismatch.parameter_weight);
   CHECK(study.mismatch.gain_factor == defaults.mismatch.gain_factor);
   CHECK(study.mismatch.time_constant_factor == defaults.mismatch.time_constant_factor);
@@ -98,11 +99,12 @@ TEST_CASE("keys that are left out have the defaults of Study", "[study_file]") {
 TEST_CASE("the optional keys of the controller land in their place", "[study_file]") {
   const Study study = small_with("control_horizon = 5",
                                  "control_horizon = 20\nweight_convention = 'squared'\nslack = 'per-cv'\n"
-                                 "target_violation_cost = 50");
+                                 "target_violation_cost = 50\nsolver_time_limit = 0.5");
   CHECK(study.controller.control_horizon == 20);
   CHECK(study.controller.weight_convention == WeightConvention::squared);
   CHECK(study.controller.slack_form == SlackForm::per_cv);
   CHECK(study.controller.target_violation_cost == 50);
+  CHECK(study.controller.solver_time_limit == 0.5);
 }
 
 TEST_CASE("the keys of s0_perturbation land in their place", "[study_file]") {

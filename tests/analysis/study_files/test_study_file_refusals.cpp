@@ -62,7 +62,7 @@ TEST_CASE("unknown keys and tables are refused with the nearest and all allowed 
       {"sample_time = 1", "sampletime = 1", "sampletime",
        "controller: found unknown key 'sampletime' (nearest: 'sample_time'); allowed: sample_time, "
        "prediction_horizon, control_horizon, move_blocks, weight_convention, slack, target_violation_cost, "
-       "mv, cv, md, program"},
+       "solver_time_limit, mv, cv, md, program"},
       {"cost = 6", "cost = 6\nzzz = 1", "zzz",
        "controller.mv.cold: found unknown key 'zzz'; allowed: cost, move_suppression, target_weight, "
        "resting_value, resting_weight, hard, move_limit"},

@@ -143,6 +143,8 @@ TEST_CASE("the numbers of the controller are checked", "[study_file]") {
        "controller.weight_convention: found true; allowed: direct, squared"},
       {"control_horizon = 5", "control_horizon = 5\ntarget_violation_cost = 0", "target_violation_cost",
        "controller.target_violation_cost: found 0; allowed: a number > 0"},
+      {"control_horizon = 5", "control_horizon = 5\nsolver_time_limit = 0", "solver_time_limit",
+       "controller.solver_time_limit: found 0; allowed: a number > 0"},
       {"cost = -1", "cost = nan", "cost = nan",
        "controller.mv.hot.cost: found nan; allowed: a finite number"},
       {"move_suppression = 2", "move_suppression = -2", "move_suppression = -2",

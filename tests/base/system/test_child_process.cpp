@@ -1,4 +1,5 @@
 #include <chrono>
+#include <exception>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -7,9 +8,11 @@
 #include <catch2/catch.hpp>
 #include <dirent.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include "base/system/child_process.hpp"
+#include "base/system/surroundings.hpp"
 
 // Programs that answer lines by lines, and programs that do not.
 
@@ -113,12 +116,55 @@ TEST_CASE(
   ChildProcess fails = shell("echo 'no module named x' >&2; exit 3");
   CHECK_THAT(failure_of(fails, 20.0),
              Contains("ended with code 3; at the end of its stderr: no module named x"));
-  ChildProcess killed = shell("read -r line; kill -9 $$");
-  CHECK_THAT(failure_of(killed, 20.0), Contains("ended by signal 9"));
+  ChildProcess crashes = shell("read -r line; kill -SEGV $$");
+  CHECK_THAT(failure_of(crashes, 20.0), Contains("ended by signal 11"));
   ChildProcess deaf = shell("exec 0<&- 1>&-; sleep 1000");
   CHECK_THAT(failure_of(deaf, 20.0), Contains("closed its stdin or stdout"));
   CHECK_THROWS_WITH(ChildProcess({"/no/such/program"}),
                     Contains("program `/no/such/program` cannot be started"));
+}
+
+TEST_CASE("child process: what is killed from outside, or cannot be started, was not asked") {
+  const auto ask = [](const std::string& script) {
+    ChildProcess child = shell(script);
+    child.send("hello", soon());
+    child.receive(soon());
+  };
+  // The shell is the program, or reports the end of what it runs.
+  for (const std::string killed : {"$$", "0"})
+    for (const char* signal : {"HUP", "INT", "KILL", "TERM"})
+      CHECK_THROWS_AS(ask(fmt::format("read -r a; sh -c 'kill -{} {}'; exit $?", signal, killed)),
+                      SurroundingsFailure);
+  for (const char* fault : {"kill -SEGV $$", "kill -ABRT $$", "kill -BUS $$", "exit 1", "exit 126",
+                            "exit 255", "sh -c 'kill -SEGV $$'; exit $?"})
+    CHECK_THROWS_AS(ask(fmt::format("read -r a; {}", fault)), ChildFailure);
+  CHECK_THROWS_WITH(ask("read -r a; echo 'gone' >&2; kill -9 $$"),
+                    Contains("ended by signal 9 (Killed); at the end of its stderr: gone"));
+}
+
+TEST_CASE("child process: without files there is none, and that says nothing of the program") {
+  rlimit before{};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  const auto open = static_cast<rlim_t>(open_files() - 3);  // without ".", "..", and the list itself
+  int shortages = 0;
+  for (rlim_t more = 0; more < 12; ++more) {
+    rlimit few = before;
+    few.rlim_cur = open + more;
+    ::setrlimit(RLIMIT_NOFILE, &few);
+    try {
+      ChildProcess child({"cat"});
+      child.send("hello", soon());
+      child.receive(soon());
+    } catch (const std::exception& error) {
+      ++shortages;
+      ::setrlimit(RLIMIT_NOFILE, &before);
+      INFO(error.what());
+      CHECK(is_of_surroundings(error));
+    }
+    ::setrlimit(RLIMIT_NOFILE, &before);
+  }
+  CHECK(shortages > 2);
+  CHECK(shortages < 12);
 }
 
 TEST_CASE("child process: one that floods stderr is heard all the same, and the end of the flood is kept") {

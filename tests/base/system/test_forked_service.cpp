@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <fstream>
 #include <mutex>
+#include <new>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -16,6 +18,7 @@
 
 #include "base/system/fork_server.hpp"
 #include "base/system/forked_service.hpp"
+#include "base/system/surroundings.hpp"
 
 namespace mpm {
 namespace {
@@ -65,6 +68,46 @@ TEST_CASE("the end of the process of a forked service is told, and the next call
   CHECK_THROWS_AS(service.ask({0}), ForeignFailure);
   ForkedService other([](const std::vector<double>&) -> std::vector<double> { std::_Exit(7); }, kPatience);
   CHECK_THROWS_WITH(other.ask({1}), "its process ended with code 7");
+}
+
+TEST_CASE("a forked service that is killed from outside, or has no memory, was not asked") {
+  const auto serve = [](const std::vector<double>& numbers) -> std::vector<double> {
+    if (numbers.front() == 0)
+      throw std::bad_alloc();
+    std::raise(static_cast<int>(numbers.front()));
+    return numbers;
+  };
+  const ForkServer server([&serve](const std::vector<double>&) { return serve; });
+  for (const int signal : {0, SIGHUP, SIGKILL, SIGTERM}) {
+    ForkedService service(serve, kPatience);
+    CHECK_THROWS_AS(service.ask({1.0 * signal}), SurroundingsFailure);
+    ServedProcess served(server, {}, kPatience);
+    CHECK_THROWS_AS(served.ask({1.0 * signal}), SurroundingsFailure);
+  }
+  ServedProcess crashes(server, {}, kPatience);
+  CHECK_THROWS_AS(crashes.ask({1.0 * SIGABRT}), ForeignFailure);
+  ServedProcess memory(server, {}, kPatience);
+  CHECK_THROWS_WITH(memory.ask({0}), "not enough memory");
+}
+
+TEST_CASE("services of a server: whoever waits for one, or makes them, is none of it", "[fork-server]") {
+  const ForkServer server([](const std::vector<double>&) {
+    return [](const std::vector<double>& numbers) -> std::vector<double> {
+      const pid_t mediator = ::getppid();
+      std::ifstream status("/proc/" + std::to_string(mediator) + "/stat");
+      std::string word, maker;
+      status >> word >> word >> word >> maker;
+      ::kill(numbers.front() == 0 ? mediator : std::stoi(maker), SIGKILL);
+      for (;;)
+        ::pause();
+    };
+  });
+  ServedProcess first(server, {}, kPatience);
+  CHECK_THROWS_AS(first.ask({0}), SurroundingsFailure);
+  ServedProcess second(server, {}, 1.0);
+  CHECK_THROWS(second.ask({1}));  // its mediator lives, and ends it in time
+  ServedProcess third(server, {}, kPatience);
+  CHECK_THROWS_AS(third.ask({0}), SurroundingsFailure);
 }
 
 TEST_CASE("an answer that does not come is given up") {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <exception>
+#include <stdexcept>
+#include <string>
+
+// "Asked, and it failed" and "could not be asked" are two things. The first is an outcome: of a method, a
+// plant, a controller, a loop. The second says nothing of any of them.
+
+namespace mpm {
+
+/// What was to be asked or run could not be, through no doing of its own: somebody killed its process, or
+/// there was no process for it. Nobody keeps that as an outcome. A run tries once more, and then stops
+/// without it (run_missing()).
+class SurroundingsFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Is it of this kind? So are std::bad_alloc, and std::system_error: no files, processes, threads or memory
+/// left. Whoever makes an outcome of an exception lets these pass.
+bool is_of_surroundings(const std::exception& error);
+
+/// Its text for people: that of the standard library for too little memory says nothing.
+std::string what_happened(const std::exception& error);
+
+/// How a process ended.
+struct ProcessEnd {
+  std::string text;  ///< "ended by signal 11 (Segmentation fault)" or "ended with code 3"
+  /// By SIGHUP, SIGINT, SIGKILL or SIGTERM, which no program gets for an error of its own, also as a shell
+  /// reports them for what it ran: as the code 128 + signal.
+  bool from_outside;
+};
+/// By its status, as waitpid() gives it.
+ProcessEnd process_end(int status);
+
+}  // namespace mpm
