@@ -73,9 +73,10 @@ const AssessmentRecord* ExperimentRecord::diagnosed() const {
   return found == assessments.end() ? nullptr : &*found;
 }
 
-Diagnosis ExperimentRecord::chain() const {
+const AssessmentRecord& ExperimentRecord::chain() const {
+  static const AssessmentRecord none;
   const AssessmentRecord* const said = diagnosed();
-  return said == nullptr ? Diagnosis{} : diagnosis_of(*said);
+  return said == nullptr ? none : *said;
 }
 
 ExperimentRunner::ExperimentRunner(const Study& study, AssessmentContext context,

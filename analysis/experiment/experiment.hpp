@@ -93,8 +93,8 @@ struct ExperimentRecord {
   const AssessmentRecord* by(std::string_view method) const;
   /// What the method that diagnoses says (diagnoses()); null when the study has none.
   const AssessmentRecord* diagnosed() const;
-  /// The same as a Diagnosis; without vectors and without impact when it says nothing.
-  Diagnosis chain() const;
+  /// The same; an answer without a form when the study has none.
+  const AssessmentRecord& chain() const;
 };
 
 /// Runs experiments of one study; keeps workspaces between them, so each thread needs its own. Results depend

@@ -8,9 +8,9 @@
 #include <Eigen/Core>
 
 #include "analysis/indicators/acf_oscillation.hpp"
-#include "analysis/indicators/number_column.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
 #include "plants/non_finite.hpp"
+#include "plants/row.hpp"
 
 namespace mpm {
 
@@ -132,8 +132,7 @@ double decay_lag(const Autocorrelation& acf, double level, double band_factor = 
 /// 1 ... max_lag together (Bonferroni): 1.68 for 50 lags and 0.95.
 double simultaneous_band_factor(double confidence, Eigen::Index max_lag);
 
-/// Every number of a comparison, the verdicts as the numbers of their enumerators. The functions themselves
-/// (`AcfFeatures::values`) are none of them.
-std::vector<NumberColumn<AcfComparison>> acf_columns();
+/// Every number of a comparison. The functions themselves (`AcfFeatures::values`) are none of them.
+std::vector<Row<AcfComparison>> acf_rows();
 
 }  // namespace mpm

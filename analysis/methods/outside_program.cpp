@@ -145,9 +145,8 @@ class DescriptionReader {
 
   AssessmentNumberInfo number_info(const Json& json) const {
     refuse_others(json, {"name", "scope", "meaning", "unit"});
-    AssessmentNumberInfo info{.name = text(json, "name", ""),
-                              .meaning = text(json, "meaning", ""),
-                              .unit = text(json, "unit", "1")};
+    AssessmentNumberInfo info{text(json, "name", ""), NumberScope::loop, text(json, "meaning", ""),
+                              text(json, "unit", "1")};
     const std::string scope = json.value("scope", "loop");
     const std::array<std::pair<const char*, NumberScope>, 3> scopes{
         {{"loop", NumberScope::loop}, {"cv", NumberScope::cv}, {"channel", NumberScope::channel}}};

@@ -36,14 +36,17 @@ NumberScope scope_of(const std::string& name) {
 }
 
 AssessmentNumberInfo number_of(const Json& json) {
-  return {.name = json.at("name"),
-          .scope = scope_of(json.at("scope")),
-          .meaning = json.at("meaning"),
-          .unit = json.at("unit"),
-          .words = json.at("words"),
-          .summarised = json.at("summarised"),
-          .label = json.at("label"),
-          .estimates_ivar_basis = json.at("estimates_ivar_basis")};
+  NumberText text{.name = json.at("name"),
+                  .meaning = json.at("meaning"),
+                  .unit = json.at("unit"),
+                  .words = numbered(json.at("words").get<std::vector<std::string>>()),
+                  .heading = json.at("label")};
+  const bool estimates = json.at("estimates_ivar_basis");
+  const bool summarised = json.at("summarised");
+  return {std::move(text), scope_of(json.at("scope")),
+          estimates    ? NumberFinding::regression
+          : summarised ? NumberFinding::summary
+                       : NumberFinding::none};
 }
 
 /// Archives of earlier programs say nothing of it.
@@ -90,15 +93,19 @@ std::string method_description_json(const MethodDescription& method) {
   if (!method.fingerprint.empty())
     json["fingerprint"] = method.fingerprint;
   json["numbers"] = Json::array();
-  for (const AssessmentNumberInfo& number : method.numbers)
+  for (const AssessmentNumberInfo& number : method.numbers) {
+    Json words = Json::array();
+    for (const NumberWord& each : number.words)
+      words.push_back(each.word);
     json["numbers"].push_back({{"name", number.name},
                                {"scope", name_of(number.scope)},
                                {"meaning", number.meaning},
                                {"unit", number.unit},
-                               {"words", number.words},
-                               {"summarised", number.summarised},
-                               {"label", number.label},
-                               {"estimates_ivar_basis", number.estimates_ivar_basis}});
+                               {"words", std::move(words)},
+                               {"summarised", number.finding == NumberFinding::summary},
+                               {"label", number.heading},
+                               {"estimates_ivar_basis", number.finding == NumberFinding::regression}});
+  }
   return json.dump();
 }
 

@@ -231,13 +231,13 @@ std::string experiment_title(const Study& study, const ExperimentDraw& draw) {
 std::string verdict_text(const Study& study, const ExperimentRecord& record) {
   if (record.status != ExperimentStatus::ok)
     return std::string(to_string(record.status));
-  const Diagnosis chain = record.chain();
+  const AssessmentRecord& chain = record.chain();
   if (record.draw.named)
     return fmt::format("flagged {}; {}", flagged_text(study, chain), scenario_verdict_text(study, record));
-  if (chain.ivar.size() == 0)
+  if (!chain.answered())
     return "not assessed by the chain";
-  return fmt::format("{}located {}, I_MPM {:.3f}: {}", chain.impactful ? "" : "no impact, ",
-                     cv_name(study, chain.predicted_cv), chain.indicator.i_mpm,
+  return fmt::format("{}located {}, I_MPM {:.3f}: {}", chain.flagged ? "" : "no impact, ",
+                     cv_name(study, chain.predicted_cv), chain.number("i_mpm"),
                      source_name(chain.predicted_source));
 }
 
