@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "plants/enum_words.hpp"
+
 namespace mpm {
 
 /// A value that a number can have, and the word for it.
@@ -41,7 +43,12 @@ inline std::vector<NumberWord> no_yes() {
   return numbered({"no", "yes"});
 }
 
-/// The words of enumerators; each has a to_string().
+/// The words of all values of an enumeration.
+template <WordedEnum Enum>
+std::vector<NumberWord> enum_words() {
+  return numbered(kWords<Enum>);
+}
+/// Those of some values; each has a to_string().
 template <class Enumerators>
 std::vector<NumberWord> enum_words(const Enumerators& enumerators) {
   std::vector<NumberWord> words;

@@ -151,7 +151,7 @@ Row<Owner> member_row(NumberText text, Lens lens) {
         auto& member = std::invoke(lens, owner);
         using Member = std::remove_cvref_t<decltype(member)>;
         if constexpr (std::is_floating_point_v<T> && std::is_integral_v<Member>)
-          if (!(std::abs(value) <= static_cast<T>(std::numeric_limits<Member>::max() / 2)))  // NaN as well
+          if (!(2.0 * std::abs(value) <= static_cast<T>(std::numeric_limits<Member>::max())))  // NaN as well
             return;
         if constexpr (std::is_enum_v<Member>)
           if (!words.empty() && word_for(words, value) == nullptr)

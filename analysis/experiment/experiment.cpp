@@ -46,20 +46,6 @@ AssessmentRecord* chain_verdict(std::vector<AssessmentRecord>& assessments) {
 
 }  // namespace
 
-std::string_view to_string(ExperimentStatus status) {
-  switch (status) {
-    case ExperimentStatus::ok:
-      return "ok";
-    case ExperimentStatus::infeasible:
-      return "infeasible";
-    case ExperimentStatus::failed:
-      return "failed";
-    case ExperimentStatus::unstable:
-      return "unstable";
-  }
-  return "unknown";
-}
-
 const AssessmentRecord* ExperimentRecord::by(std::string_view method) const {
   const auto found = std::find_if(assessments.begin(), assessments.end(), [method](const auto& assessment) {
     return assessment.form->method().name == method;

@@ -21,6 +21,7 @@
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
 #include "analysis/sensitivity/s0_perturbation.hpp"
+#include "plants/enum_words.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
 
@@ -35,8 +36,8 @@ enum class ExperimentStatus : std::int8_t {
                    ///< leaves such loops out (UnstableLoops)
 };
 
-/// "ok", "infeasible", "failed", "unstable"
-std::string_view to_string(ExperimentStatus status);
+template <>
+inline constexpr auto kWords<ExperimentStatus> = word_list("ok", "infeasible", "failed", "unstable");
 
 /// Whose closed-loop data an archive keeps.
 /// Which loops are kept: none, those with a wrong verdict of the first method, all, or all with their

@@ -12,6 +12,7 @@
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
+#include "plants/enum_words.hpp"
 #include "scenarios/files/suite_file.hpp"
 
 namespace mpm {
@@ -85,11 +86,10 @@ inline constexpr std::string_view kReferenceMethod = "ceiling";
 
 /// What a method is asked to do.
 enum class LeaderboardTask { detection, location, source };
-inline constexpr LeaderboardTask kLeaderboardTasks[] = {LeaderboardTask::detection, LeaderboardTask::location,
-                                                        LeaderboardTask::source};
 
-/// "detection", "location", "source"
-std::string_view to_string(LeaderboardTask task);
+template <>
+inline constexpr auto kWords<LeaderboardTask> = word_list("detection", "location", "source");
+inline constexpr auto kLeaderboardTasks = enumerators<LeaderboardTask>();
 
 /// A task is passed by a method that gives a verdict on 90 % of the loops (kFewestAnswers) and is right on 80
 /// % of those that the task looks at (kPassingShare):

@@ -2,13 +2,13 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/indicators/acf_oscillation.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
+#include "plants/enum_words.hpp"
 #include "plants/non_finite.hpp"
 #include "plants/row.hpp"
 
@@ -31,8 +31,10 @@ enum class ErrorOrigin : std::int8_t {
   both,    ///< y0_diag lies between the two
 };
 
-std::string_view to_string(LoopSpeed speed);
-std::string_view to_string(ErrorOrigin origin);
+template <>
+inline constexpr auto kWords<LoopSpeed> = word_list("undetermined", "alike", "slower", "faster");
+template <>
+inline constexpr auto kWords<ErrorOrigin> = word_list("none", "own", "others", "both");
 
 /// Options of `compare_autocorrelations`.
 struct AcfComparisonOptions {

@@ -1,6 +1,5 @@
 // The numbers of a comparison of autocorrelation functions.
 
-#include <array>
 #include <string>
 #include <utility>
 
@@ -21,8 +20,7 @@ void append_features(AcfRows& rows, const std::string& of, AcfFeatures AcfCompar
   add(kQuantity, "decay_lag", "lag from which on |ACF| stays below its level", "samples",
       &AcfFeatures::decay_lag);
   add(std::int8_t{}, "oscillation", "whether the ACF oscillates", "1", oscillation, &AcfOscillation::verdict);
-  rows.back().text.words =
-      enum_words(std::array{Oscillation::undetermined, Oscillation::absent, Oscillation::present});
+  rows.back().text.words = enum_words<Oscillation>();
   add(kQuantity, "decay_ratio", "decay ratio of the ACF over half a period", "1", oscillation,
       &AcfOscillation::decay_ratio);
   add(kQuantity, "period", "period of the ACF", "samples", oscillation, &AcfOscillation::period);
@@ -45,13 +43,12 @@ std::vector<Row<AcfComparison>> acf_rows() {
   add("y_from_y0_diag", "distance of ACF(y) from ACF(y0_diag)", &A::y_from_y0_diag);
   add("y0_diag_from_y0", "distance of ACF(y0_diag) from ACF(y0)", &A::y0_diag_from_y0);
   add("own_share", "1 when y0_diag is like y0, 0 when it is like y", &A::own_share);
-  const auto verdict = [&rows](const char* name, const char* meaning, auto member, const auto& enumerators) {
-    rows.push_back(member_row<std::int8_t>({name, meaning, "1", "", enum_words(enumerators)}, member));
-  };
-  verdict("loop_speed", "speed of y against that of y0", &A::speed,
-          std::array{LoopSpeed::undetermined, LoopSpeed::alike, LoopSpeed::slower, LoopSpeed::faster});
-  verdict("error_origin", "whose model the error that shows in the ACF comes from", &A::origin,
-          std::array{ErrorOrigin::none, ErrorOrigin::own, ErrorOrigin::others, ErrorOrigin::both});
+  rows.push_back(member_row<std::int8_t>(
+      {"loop_speed", "speed of y against that of y0", "1", "", enum_words<LoopSpeed>()}, &A::speed));
+  rows.push_back(
+      member_row<std::int8_t>({"error_origin", "whose model the error that shows in the ACF comes from", "1",
+                               "", enum_words<ErrorOrigin>()},
+                              &A::origin));
   return rows;
 }
 

@@ -12,13 +12,6 @@
 namespace mpm {
 namespace {
 
-std::vector<NumberWord> mismatch_parameters() {
-  std::vector<std::string_view> words;
-  for (int value = 0; value <= static_cast<int>(MismatchParameter::sign); ++value)
-    words.push_back(to_string(static_cast<MismatchParameter>(value)));
-  return numbered(words);
-}
-
 constexpr const char* kMismatchBound = "mismatch_bound";
 
 /// A number of each method that names mismatches, and none that follows from that: archives that were written
@@ -51,12 +44,12 @@ std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& metho
   }
   if (method.tells_sources)
     worded("cv_source", NumberScope::cv, "source that the method sees in a flagged CV or the worst one",
-           numbered({"none", "mpm", "ud", "mpm_ud", "other"}));
+           enum_words<FaultSource>());
   if (method.names_channels)
     worded("channel_flagged", NumberScope::channel, "the method names this channel of the model", no_yes());
   if (method.names_mismatches) {
     worded("mismatch_parameter", NumberScope::channel,
-           "parameter of this channel that the method says is wrong", mismatch_parameters());
+           "parameter of this channel that the method says is wrong", enum_words<MismatchParameter>());
     numbers.emplace_back("mismatch_size", NumberScope::channel,
                          "its size, as `mismatch_value` of an experiment is one");
     numbers.emplace_back("mismatch_lower", NumberScope::channel, "lower end of the interval of the size");

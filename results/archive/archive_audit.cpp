@@ -20,7 +20,7 @@ void write_audit(Hdf5Group& root, const std::vector<AuditedStep>& audit) {
   std::vector<std::int64_t> numbers(audit.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   group.write_dimension(kDimension, numbers, attributes<std::int64_t>({kDimension, "audited step"}));
-  write_rows(group, {kDimension}, audit_rows(), audit);
+  store_rows(group, {kDimension}, audit_rows(), audit);
 }
 
 std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& file) {
@@ -28,7 +28,7 @@ std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& fi
     return {};
   const Hdf5Group group = root.group(kAuditGroup);
   std::vector<AuditedStep> audit(group.read_list<std::int64_t>(kDimension).size());
-  read_rows(group, audit_rows(), audit, file);
+  load_rows(group, audit_rows(), audit, file);
   return audit;
 }
 

@@ -76,7 +76,7 @@ void write_autocorrelations(Hdf5Group& group, const Study& study, const BasisCas
     const Row<Eigen::MatrixXd> row = matrix_row<Eigen::MatrixXd>(
         {"acf_" + name, "autocorrelation of " + name}, {"cv", "lag"}, study.cv_count(), lags,
         [](auto& matrix) -> auto& { return matrix; });
-    write_rows<Eigen::MatrixXd>(group, {row.along("lag_time")},
+    store_rows<Eigen::MatrixXd>(group, {row.along("lag_time")},
                                 autocorrelations(*signal, study.cv_count(), lags - 1));
   }
 }
@@ -89,15 +89,15 @@ void write_basis(Hdf5Group& root, const Study& study, const BasisCase& basis) {
   group.write_attribute("healthy", std::int32_t{basis.healthy});
   group.write_attribute("explanation", basis.explanation);
   write_plant_dimensions(group, study.plant);
-  write_rows(group, point_rows(study), basis.point);
+  store_rows(group, point_rows(study), basis.point);
   write_sample_dimension(group, "sample", "sample number", "time", study, 0, study.simulation.samples);
-  write_rows(group, signal_rows(study), basis.trajectory);
-  write_rows(group, nominal_rows(study), basis.nominal);
-  write_rows(group, loop_rows(), basis.trajectory);
-  write_rows(group, solver_rows(), basis.trajectory.solver);
+  store_rows(group, signal_rows(study), basis.trajectory);
+  store_rows(group, nominal_rows(study), basis.nominal);
+  store_rows(group, loop_rows(), basis.trajectory);
+  store_rows(group, solver_rows(), basis.trajectory.solver);
   write_autocorrelations(group, study, basis);
   if (basis.trajectory.status == ControlStatus::ok)
-    write_rows(group, kept_rows(study), basis.diagnosis);
+    store_rows(group, kept_rows(study), basis.diagnosis);
 }
 
 BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivity sensitivity,
@@ -106,16 +106,16 @@ BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivi
   BasisCase basis;
   basis.healthy = group.attribute<std::int32_t>("healthy") != 0;
   basis.explanation = group.attribute<std::string>("explanation");
-  read_rows(group, point_rows(study), basis.point, file);
+  load_rows(group, point_rows(study), basis.point, file);
   basis.point.active = sensitivity.active;
   basis.sensitivity = std::move(sensitivity);
-  read_rows(group, loop_rows(), basis.trajectory, file);
-  read_rows(group, solver_rows(), basis.trajectory.solver, file);
-  read_rows(group, signal_rows(study), basis.trajectory, file);
+  load_rows(group, loop_rows(), basis.trajectory, file);
+  load_rows(group, solver_rows(), basis.trajectory.solver, file);
+  load_rows(group, signal_rows(study), basis.trajectory, file);
   if (basis.trajectory.status != ControlStatus::ok)
     return basis;  // without nominal outputs and without a diagnosis
-  read_rows(group, nominal_rows(study), basis.nominal, file);
-  read_rows(group, kept_rows(study), basis.diagnosis, file);
+  load_rows(group, nominal_rows(study), basis.nominal, file);
+  load_rows(group, kept_rows(study), basis.diagnosis, file);
   return basis;
 }
 

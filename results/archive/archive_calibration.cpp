@@ -53,7 +53,7 @@ void write_calibration(Hdf5Group& root, const Campaign& campaign) {
                         attributes<std::int64_t>({kLoopDimension, "number of the loop"}));
   group.write_dimension("method", method_names(campaign),
                         attributes<std::string>({"method", "method of assessment"}));
-  write_rows(group, {kLoopDimension}, loop_score_rows(campaign.methods.size()), loops);
+  store_rows(group, {kLoopDimension}, loop_score_rows(campaign.methods.size()), loops);
 }
 
 Calibration read_calibration(const Hdf5Group& root, const Campaign& campaign, const std::string& file) {
@@ -70,7 +70,7 @@ Calibration read_calibration(const Hdf5Group& root, const Campaign& campaign, co
   const auto count = static_cast<std::size_t>(expected.experiment_count());
   require_equal(group.read_list<std::int64_t>(kLoopDimension).size(), count, "number of loops", file);
   calibration.loops.resize(count);
-  read_rows(group, loop_score_rows(campaign.methods.size()), calibration.loops, file);
+  load_rows(group, loop_score_rows(campaign.methods.size()), calibration.loops, file);
   return calibration;
 }
 

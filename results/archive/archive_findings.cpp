@@ -1,4 +1,3 @@
-#include <array>
 
 #include "results/archive/archive_groups.hpp"
 #include "results/archive/dimensions.hpp"
@@ -26,9 +25,9 @@ void write_finding_rows(Hdf5Group& group, const std::vector<Finding>& findings) 
           [](const F& finding) { return std::string(finding.kind ? to_string(*finding.kind) : ""); }),
       member_row<std::string>({"of_method", "method whose answers they are", "1", "empty: of no method"},
                               &F::method),
-      member_row<std::int8_t>({"form", "how it is read", "1", "share: of experiments, 0 to 1",
-                               enum_words(std::array{FindingForm::share, FindingForm::number})},
-                              &F::form),
+      member_row<std::int8_t>(
+          {"form", "how it is read", "1", "share: of experiments, 0 to 1", enum_words<FindingForm>()},
+          &F::form),
       member_row<double>({"value", "measured value", "1", "NaN: nothing was measured"}, &F::value),
       member_row<double, F>({"lower", "lower end of the interval of the value", "1", "NaN: no interval"},
                             path(&F::interval, &Interval::lower)),
@@ -39,7 +38,7 @@ void write_finding_rows(Hdf5Group& group, const std::vector<Finding>& findings) 
       member_row<std::int64_t>({"hits", "of a share, experiments that count", "1", "-1: no share"}, &F::hits),
       member_row<double>({"reported", "value reported elsewhere", "1", "NaN where the study names none"},
                          &F::reported)};
-  write_rows(group, {"finding"}, rows, findings);
+  store_rows(group, {"finding"}, rows, findings);
 }
 
 /// Of the chain: true CV against predicted CV.
@@ -91,7 +90,7 @@ void write_pairs(Hdf5Group& group, const StudyFindings& findings) {
                             path(&P::test, &McNemarTest::p_worse)),
       member_row<double>({"p_holm", "p_two_sided corrected for all pairs of its truth (Holm 1979)"},
                          &P::p_holm)};
-  write_rows(group, {"pair"}, rows, pairs);
+  store_rows(group, {"pair"}, rows, pairs);
 }
 
 }  // namespace

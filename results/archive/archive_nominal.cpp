@@ -57,7 +57,7 @@ void write_sensitivity(Hdf5Group& group, const std::string& title, const Study& 
   write_variable_dimension(group, "active_cv", "CV at a soft limit or a setpoint, which is stepped", active);
   write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);
   write_sample_dimension(group, "lag", "samples after the step", "time", study, 1, lags);
-  write_rows(group, {"active_cv"}, stepped_rows(study, lags), stepped);
+  store_rows(group, {"active_cv"}, stepped_rows(study, lags), stepped);
 }
 
 NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, const Study& study,
@@ -66,7 +66,7 @@ NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, con
   const std::vector<std::string> active = group.read_list<std::string>("active_cv");
   const auto lags = static_cast<Eigen::Index>(group.read_list<std::int32_t>("lag").size());
   std::vector<SteppedCv> stepped(active.size());
-  read_rows(group, stepped_rows(study, lags), stepped, file);
+  load_rows(group, stepped_rows(study, lags), stepped, file);
   NominalSensitivity sensitivity;
   sensitivity.cv_count = study.cv_count();
   for (std::size_t a = 0; a < active.size(); ++a) {
@@ -108,7 +108,7 @@ void write_nominal_direct(Hdf5Group& root, const Study& study, const BasisCase& 
   write_sensitivity(group, "T0 as direct step responses, beside the identified one of /nominal", study,
                     *basis.sensitivity_direct);
   const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
-  write_rows<double>(group, {"active_cv"},
+  store_rows<double>(group, {"active_cv"},
                      {member_row<double, double>(
                          {"largest_difference", "largest difference of identified and direct step responses",
                           "1", "in the units of t0_step_response"},

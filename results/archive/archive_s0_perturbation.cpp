@@ -35,7 +35,7 @@ void write_fits(Hdf5Group& group, const Study& study, const NominalSensitivity& 
   const char* const along = "active_cv";
   const auto model = path(&DiagonalFit::fit, &SecondOrderFit::model);
   write_cv_dimension(group, along, "CV at a soft limit", study, fits);
-  write_rows<DiagonalFit>(
+  store_rows<DiagonalFit>(
       group, {along},
       {fit_row<DiagonalFit>("time_constant", "time constant of the fit to T0",
                             unit_text(study.plant.time_unit), model, &SecondOrderModel::time_constant),
@@ -51,7 +51,7 @@ void write_structure(Hdf5Group& group, const Study& study, const BasisCase& basi
   const char* const along = "fixed_active_cv";
   const auto model = path(&F::fixed, &SecondOrderFit::model);
   write_cv_dimension(group, along, "CV at a soft limit with and without the fixed MVs", study, fits);
-  write_rows<F>(group, {along},
+  store_rows<F>(group, {along},
                 {fit_row<F>("fixed_time_constant", "time constant of the fit with fixed MVs",
                             unit_text(study.plant.time_unit), model, &SecondOrderModel::time_constant),
                  fit_row<F>("fixed_damping", "damping of the fit with fixed MVs", "1", model,
@@ -87,7 +87,7 @@ void write_curves(Hdf5Group& group, const Study& study, const RecordRange& recor
       {"experiments", "number of experiments behind the ratios"}, &S0Curve::experiments)};
   append_spreads(study, "time_constant", "time constant", &S0Curve::time_constant, rows);
   append_spreads(study, "damping", "damping", &S0Curve::damping, rows);
-  write_rows(group, {"perturbed_cv"}, rows, curves);
+  store_rows(group, {"perturbed_cv"}, rows, curves);
 }
 
 }  // namespace

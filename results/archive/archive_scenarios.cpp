@@ -59,7 +59,7 @@ void write_scenarios(Hdf5Group& root, const Campaign& campaign) {
   group.write_dimension("experiment", indices_of(records),
                         attributes<std::int64_t>({"experiment", "index of the experiment in the study"}));
   write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);
-  write_rows(group, {"experiment"}, scenario_truth_rows(study), records);
+  store_rows(group, {"experiment"}, scenario_truth_rows(study), records);
 }
 
 }  // namespace mpm

@@ -61,10 +61,7 @@ std::vector<Row<Trajectory>> loop_rows() {
                                     "records are zero after these unless the status is ok"},
                                    &T::samples_done),
           member_row<std::int8_t>(
-              {"failure", "what made the closed loop fail", "1", "",
-               enum_words(std::array{LoopFailure::none, LoopFailure::solver, LoopFailure::plant,
-                                     LoopFailure::no_steady_state, LoopFailure::controller})},
-              &T::failure),
+              {"failure", "what made the closed loop fail", "1", "", enum_words<LoopFailure>()}, &T::failure),
           member_row<std::string>({"message", "what failed", "1", "empty when nothing did"}, &T::message)};
 }
 

@@ -134,7 +134,7 @@ std::vector<DrawRow> further_draws(const Study& study) {
       whole({"disturbances", "places where an unmeasured disturbance acts"},
             [](const Draw& draw) { return static_cast<std::int32_t>(draw.disturbances.size()); }),
       follows<std::int8_t>({"ud_signal", "shape of the signal of the unmeasured disturbance", "1",
-                            "-1: no disturbance", with_none(enum_words(kDisturbanceShapes))},
+                            "-1: no disturbance", with_none(enum_words<DisturbanceShape>())},
                            [](const Draw& draw) {
                              return draw.disturbances.empty() ? std::int8_t{-1}
                                                               : static_cast<std::int8_t>(shape_of(
@@ -153,7 +153,7 @@ std::vector<DrawRow> further_draws(const Study& study) {
   if (study.experiments.other == 0)
     return rows;
   rows.push_back(follows<std::int8_t>({"other_fault", "what is wrong besides model and disturbance", "1",
-                                       "-1: nothing", with_none(enum_words(kOtherFaultKinds))},
+                                       "-1: nothing", with_none(enum_words<OtherFaultKind>())},
                                       [](const Draw& draw) {
                                         return draw.other ? static_cast<std::int8_t>(draw.other->kind)
                                                           : std::int8_t{-1};
@@ -216,7 +216,7 @@ std::vector<DrawRow> draw_rows(const Study& study) {
   rows.push_back(of_tuning<std::int8_t>(
       {"tuning_parameter", "weight of the controller that is changed", "1",
        "move_suppression, target_weight: of an MV; slack_weight, setpoint_weight: of a CV",
-       with_none(enum_words(kTuningParameters))},
+       with_none(enum_words<TuningParameter>())},
       &TuningChange::parameter, -1));
   rows.push_back(of_tuning<std::int32_t>(
       {"tuning_index", "position of the MV in mv, or of the CV in cv, whose weight is changed", "1",
@@ -373,12 +373,9 @@ std::vector<Row<LoopConditions>> condition_rows() {
 std::vector<Row<AssessmentRecord>> verdict_rows(const Study& study) {
   using A = AssessmentRecord;
   return {
-      member_row<std::int8_t>(
-          {"assessment_status", "how the assessment by a method ended", "1",
-           "see reason of the method's group",
-           enum_words(std::array{AssessmentStatus::ok, AssessmentStatus::not_applicable,
-                                 AssessmentStatus::failed, AssessmentStatus::not_assessed})},
-          &A::status),
+      member_row<std::int8_t>({"assessment_status", "how the assessment by a method ended", "1",
+                               "see reason of the method's group", enum_words<AssessmentStatus>()},
+                              &A::status),
       member_row<std::int8_t>({"flagged", "the method says that something is wrong with the loop", "1",
                                "no unless the assessment status is ok", no_yes()},
                               &A::flagged),
@@ -407,8 +404,7 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
           {"status", "how the experiment ended", "1",
            "infeasible: an MPC problem had no solution, the experiment is left out; failed: see "
            "message; unstable: the loop is not stable, the experiment is left out",
-           enum_words(std::array{ExperimentStatus::ok, ExperimentStatus::infeasible, ExperimentStatus::failed,
-                                 ExperimentStatus::unstable})},
+           enum_words<ExperimentStatus>()},
           &Record::status),
       member_row<std::string>(
           {"message", "why the experiment failed", "1",

@@ -24,7 +24,7 @@ Attributes attributes(const Row<Owner>& row) {
 
 /// Writes the rows of all these owners. `along` is the dimension along them, or none when there is one owner.
 template <class Owner>
-void write_rows(Hdf5Group& group, const std::vector<std::string>& along, const std::vector<Row<Owner>>& rows,
+void store_rows(Hdf5Group& group, const std::vector<std::string>& along, const std::vector<Row<Owner>>& rows,
                 const std::vector<Owner>& owners) {
   for (const Row<Owner>& row : rows)
     std::visit(
@@ -42,8 +42,8 @@ void write_rows(Hdf5Group& group, const std::vector<std::string>& along, const s
         row.access);
 }
 template <class Owner>
-void write_rows(Hdf5Group& group, const std::vector<Row<Owner>>& rows, const Owner& owner) {
-  write_rows(group, {}, rows, std::vector<Owner>{owner});
+void store_rows(Hdf5Group& group, const std::vector<Row<Owner>>& rows, const Owner& owner) {
+  store_rows(group, {}, rows, std::vector<Owner>{owner});
 }
 
 /// Throws ArchiveError when a value that is to have a word has none.
@@ -54,9 +54,9 @@ void require_words(const NumberText& text, const std::vector<T>& values, const s
                                    text.words.front().value, text.words.back().value));
 }
 
-/// The reverse of write_rows(), of the rows that can be put back; `file` is for messages.
+/// The reverse of store_rows(), of the rows that can be put back; `file` is for messages.
 template <class Owner>
-void read_rows(const Hdf5Group& group, const std::vector<std::size_t>& along,
+void load_rows(const Hdf5Group& group, const std::vector<std::size_t>& along,
                const std::vector<Row<Owner>>& rows, std::vector<std::reference_wrapper<Owner>> owners,
                const std::string& file) {
   for (const Row<Owner>& row : rows)
@@ -78,14 +78,14 @@ void read_rows(const Hdf5Group& group, const std::vector<std::size_t>& along,
         row.access);
 }
 template <class Owner>
-void read_rows(const Hdf5Group& group, const std::vector<Row<Owner>>& rows, Owner& owner,
+void load_rows(const Hdf5Group& group, const std::vector<Row<Owner>>& rows, Owner& owner,
                const std::string& file) {
-  read_rows(group, {}, rows, {owner}, file);
+  load_rows(group, {}, rows, {owner}, file);
 }
 template <class Owner>
-void read_rows(const Hdf5Group& group, const std::vector<Row<Owner>>& rows, std::vector<Owner>& owners,
+void load_rows(const Hdf5Group& group, const std::vector<Row<Owner>>& rows, std::vector<Owner>& owners,
                const std::string& file) {
-  read_rows(group, {owners.size()}, rows, {owners.begin(), owners.end()}, file);
+  load_rows(group, {owners.size()}, rows, {owners.begin(), owners.end()}, file);
 }
 
 }  // namespace mpm

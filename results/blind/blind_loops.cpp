@@ -140,7 +140,7 @@ void write_loops(Hdf5Group& group, const Study& study, const BlindLoops& loops) 
 void write_benchmark(Hdf5Group& group, const Study& study, const AssessedLoop& benchmark) {
   for (const LoopSignal& signal : loop_signals())
     if (const Eigen::MatrixXd& values = benchmark.*signal.member; !is_candidates(signal) || values.rows() > 0)
-      write_rows<AssessedLoop>(group, {row_of(study, signal)}, benchmark);
+      store_rows<AssessedLoop>(group, {row_of(study, signal)}, benchmark);
 }
 
 void write_dimensions(Hdf5Group& group, const Study& study) {
