@@ -17,6 +17,7 @@
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/sensitivity/loop_stability.hpp"
 #include "analysis/sensitivity/s0_perturbation.hpp"
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/experiment_draw.hpp"

@@ -6,20 +6,6 @@
 
 namespace mpm {
 
-std::string_view to_string(ExperimentStatus status) {
-  switch (status) {
-    case ExperimentStatus::ok:
-      return "ok";
-    case ExperimentStatus::infeasible:
-      return "infeasible";
-    case ExperimentStatus::failed:
-      return "failed";
-    case ExperimentStatus::unstable:
-      return "unstable";
-  }
-  return "unknown";
-}
-
 const AssessmentRecord* ExperimentRecord::by(std::string_view method) const {
   const auto found = std::find_if(assessments.begin(), assessments.end(), [method](const auto& assessment) {
     return assessment.form->method().name == method;
@@ -33,9 +19,10 @@ const AssessmentRecord* ExperimentRecord::diagnosed() const {
   return found == assessments.end() ? nullptr : &*found;
 }
 
-Diagnosis ExperimentRecord::chain() const {
+const AssessmentRecord& ExperimentRecord::chain() const {
+  static const AssessmentRecord none;
   const AssessmentRecord* const said = diagnosed();
-  return said == nullptr ? Diagnosis{} : diagnosis_of(*said);
+  return said == nullptr ? none : *said;
 }
 
 }  // namespace mpm

@@ -11,9 +11,9 @@
 #include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/loop_conditions.hpp"
 #include "analysis/experiment/repair_gain.hpp"
-#include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/assessment_record.hpp"
 #include "analysis/sensitivity/s0_perturbation.hpp"
+#include "base/enum_words.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/experiment_draw.hpp"
 
@@ -28,8 +28,8 @@ enum class ExperimentStatus : std::int8_t {
                    ///< leaves such loops out (UnstableLoops)
 };
 
-/// "ok", "infeasible", "failed", "unstable"
-std::string_view to_string(ExperimentStatus status);
+template <>
+inline constexpr auto kWords<ExperimentStatus> = word_list("ok", "infeasible", "failed", "unstable");
 
 /// Whose closed-loop data an archive keeps.
 /// Which loops are kept: none, those with a wrong verdict of the first method, all, or all with their
@@ -86,8 +86,8 @@ struct ExperimentRecord {
   const AssessmentRecord* by(std::string_view method) const;
   /// What the method that diagnoses says (diagnoses()); null when the study has none.
   const AssessmentRecord* diagnosed() const;
-  /// The same as a Diagnosis; without vectors and without impact when it says nothing.
-  Diagnosis chain() const;
+  /// The same; an answer without a form when the study has none.
+  const AssessmentRecord& chain() const;
 };
 
 }  // namespace mpm

@@ -70,22 +70,6 @@ void judge_mismatch(const Mismatch& truth, const AssessmentRecord& assessment, J
 
 }  // namespace
 
-std::string_view to_string(Correctness correctness) {
-  switch (correctness) {
-    case Correctness::not_judged:
-      return "not judged";
-    case Correctness::wrong:
-      return "wrong";
-    case Correctness::right:
-      return "right";
-  }
-  return "unknown";
-}
-
-std::string_view to_string(FlagTruth truth) {
-  return truth == FlagTruth::fault ? "fault" : "impact";
-}
-
 Correctness Judgement::location() const {
   return cvs ? correctness(cvs->located()) : predicted_cv;
 }

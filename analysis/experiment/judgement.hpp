@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "analysis/experiment/experiment_record.hpp"
+#include "base/enum_words.hpp"
 
 // What is right and what is wrong: the one place where the answer of a method is held against the truth.
 
@@ -18,8 +18,8 @@ enum class Correctness : std::int8_t {
   right,
 };
 
-/// "not judged", "wrong", "right"
-std::string_view to_string(Correctness correctness);
+template <>
+inline constexpr auto kWords<Correctness> = word_list("not judged", "wrong", "right");
 
 /// What a method says of a named scenario, CV by CV, against what the study says of it.
 struct CvJudgement {
@@ -102,8 +102,8 @@ enum class FlagTruth : std::int8_t {
   impact = 1,  ///< those with a fault that has an impact: what a monitor of the performance should see
 };
 
-/// "fault", "impact"
-std::string_view to_string(FlagTruth truth);
+template <>
+inline constexpr auto kWords<FlagTruth> = word_list("fault", "impact");
 
 /// Is the loop of this experiment to be flagged?
 bool to_be_flagged(const Study& study, const ExperimentRecord& record, FlagTruth truth);

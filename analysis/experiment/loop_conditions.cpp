@@ -45,20 +45,6 @@ double share_of(Eigen::Index samples, const Indices& variables, const Reached& r
 
 }  // namespace
 
-std::string_view to_string(NonlinearCause cause) {
-  switch (cause) {
-    case NonlinearCause::none:
-      return "none";
-    case NonlinearCause::unstable:
-      return "unstable";
-    case NonlinearCause::other_cv_active:
-      return "other_cv_active";
-    case NonlinearCause::mv_at_limit:
-      return "mv_at_limit";
-  }
-  return "unknown";
-}
-
 std::string_view title_of(NonlinearCause cause) {
   switch (cause) {
     case NonlinearCause::none:

@@ -7,6 +7,7 @@
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/study/study.hpp"
@@ -46,8 +47,9 @@ enum class NonlinearCause : std::int8_t { none = 0, unstable = 1, other_cv_activ
 inline constexpr std::array kNonlinearCauses{NonlinearCause::unstable, NonlinearCause::other_cv_active,
                                              NonlinearCause::mv_at_limit, NonlinearCause::none};
 
-/// "none", "unstable", "other_cv_active", "mv_at_limit"
-std::string_view to_string(NonlinearCause cause);
+template <>
+inline constexpr auto kWords<NonlinearCause> = word_list("none", "unstable", "other_cv_active",
+                                                         "mv_at_limit");
 /// "unstable loop", "another CV at a limit", "an MV at a limit", "none of these"
 std::string_view title_of(NonlinearCause cause);
 

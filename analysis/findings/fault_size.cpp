@@ -53,20 +53,6 @@ SizeBin bin_of(std::span<const SizedFault> faults, double confidence) {
 
 }  // namespace
 
-std::string_view to_string(FaultSize size) {
-  switch (size) {
-    case FaultSize::gain_factor:
-      return "gain_factor";
-    case FaultSize::time_constant_factor:
-      return "time_constant_factor";
-    case FaultSize::dead_time_shift:
-      return "dead_time_shift";
-    case FaultSize::disturbance_deviation:
-      return "disturbance_deviation";
-  }
-  return "unknown";
-}
-
 double disturbance_deviation(const Disturbance& disturbance, double v_deviation, double sample_time) {
   // (1 - a)/(1 + a) = tanh(Ts/2 tau), without the cancellation in 1 - a for slow disturbances.
   return std::abs(disturbance.gain) * v_deviation *

@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/experiment/record_range.hpp"
 #include "analysis/statistics/interval.hpp"
+#include "base/enum_words.hpp"
 
 namespace mpm {
 
@@ -19,7 +19,9 @@ enum class FaultSize {
   disturbance_deviation,  ///< standard deviation of the unmeasured disturbance, in the unit of the CV
 };
 
-std::string_view to_string(FaultSize size);
+template <>
+inline constexpr auto kWords<FaultSize> = word_list("gain_factor", "time_constant_factor", "dead_time_shift",
+                                                    "disturbance_deviation");
 
 /// Stationary standard deviation of y_d = gain / (time_constant s + 1) v, for white v of standard deviation
 /// `v_deviation` held over each sample:

@@ -8,10 +8,6 @@
 
 namespace mpm {
 
-std::string_view to_string(FindingForm form) {
-  return form == FindingForm::share ? "share" : "number";
-}
-
 Finding Finding::with(const Rate& rate) const {
   Finding finding = with(rate.value, rate.interval, rate.total);
   finding.form = FindingForm::share;

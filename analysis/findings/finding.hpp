@@ -8,6 +8,7 @@
 
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/sample_summary.hpp"
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
 
@@ -19,8 +20,8 @@ enum class FindingForm : std::int8_t {
   number,  ///< any other
 };
 
-/// "share", "number"
-std::string_view to_string(FindingForm form);
+template <>
+inline constexpr auto kWords<FindingForm> = word_list("share", "number");
 
 /// Under which heading a table of findings has it.
 enum class FindingGroup : std::int8_t {

@@ -91,7 +91,7 @@ struct PairsWithoutCause {
 /// The name of the number that estimates Ivar_basis; empty without one.
 std::string estimate_name(const AssessmentForm& form) {
   for (const NumberPlace& place : form.places())
-    if (place.info.estimates_ivar_basis)
+    if (place.info.finding == NumberFinding::regression)
       return place.info.name;
   return {};
 }
@@ -323,7 +323,7 @@ Finding unstable_row(const Endings& endings, Finding like) {
 std::vector<const AssessmentNumberInfo*> summarised_numbers(const AssessmentForm& form) {
   std::vector<const AssessmentNumberInfo*> numbers;
   for (const NumberPlace& place : form.places())
-    if (place.info.summarised)
+    if (place.info.finding == NumberFinding::summary)
       numbers.push_back(&place.info);
   return numbers;
 }
@@ -376,7 +376,7 @@ std::vector<Finding> rows_of(const KindFindings& kind, const Study& study, const
                        .with(kind.source_recognised));
   const std::vector<const AssessmentNumberInfo*> numbers = summarised_numbers(form);
   for (std::size_t n = 0; n < numbers.size(); ++n) {
-    Finding number = like("", numbers[n]->label.c_str(), without_marks(numbers[n]->label).c_str());
+    Finding number = like("", numbers[n]->heading.c_str(), without_marks(numbers[n]->heading).c_str());
     number.name = of + numbers[n]->name;
     for (Finding& row : summary_findings(number, kind.summaries[n]))
       rows.push_back(std::move(row));

@@ -172,18 +172,6 @@ bool PooledScores::too_many_false_alarms() const {
   return alarms != nullptr && alarms->total > 0 && alarms->interval.lower > kMostFalseAlarms;
 }
 
-std::string_view to_string(LeaderboardTask task) {
-  switch (task) {
-    case LeaderboardTask::detection:
-      return "detection";
-    case LeaderboardTask::location:
-      return "location";
-    case LeaderboardTask::source:
-      return "source";
-  }
-  return "";
-}
-
 bool passes(const PooledScores& scores, LeaderboardTask task) {
   const Rate* const alarms = scores.of("false_alarm_healthy");
   const bool quiet = alarms != nullptr && alarms->total > 0 && alarms->value <= kPassingFalseAlarms;

@@ -13,6 +13,7 @@
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/study_files/suite_file.hpp"
+#include "base/enum_words.hpp"
 
 namespace mpm {
 
@@ -86,11 +87,10 @@ inline constexpr std::string_view kReferenceMethod = "ceiling";
 
 /// What a method is asked to do.
 enum class LeaderboardTask { detection, location, source };
-inline constexpr LeaderboardTask kLeaderboardTasks[] = {LeaderboardTask::detection, LeaderboardTask::location,
-                                                        LeaderboardTask::source};
 
-/// "detection", "location", "source"
-std::string_view to_string(LeaderboardTask task);
+template <>
+inline constexpr auto kWords<LeaderboardTask> = word_list("detection", "location", "source");
+inline constexpr auto kLeaderboardTasks = enumerators<LeaderboardTask>();
 
 /// A task is passed by a method that gives a verdict on 90 % of the loops (kFewestAnswers) and is right on 80
 /// % of those that the task looks at (kPassingShare):

@@ -455,18 +455,6 @@ std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const
   return rows;
 }
 
-std::string_view to_string(FalseAlarmMark mark) {
-  switch (mark) {
-    case FalseAlarmMark::none:
-      return "";
-    case FalseAlarmMark::fewer:
-      return "fewer";
-    case FalseAlarmMark::more:
-      return "more";
-  }
-  return "unknown";
-}
-
 FalseAlarmMark false_alarm_mark(const MethodDescription& method, const MethodRates& rates) {
   const double stated = method.stated_false_alarms.value_or(kUsualFalseAlarms);
   const Rate& found = rates.false_alarm_healthy;

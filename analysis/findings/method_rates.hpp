@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
@@ -14,6 +13,7 @@
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/mcnemar.hpp"
 #include "analysis/statistics/roc.hpp"
+#include "base/enum_words.hpp"
 
 namespace mpm {
 
@@ -143,8 +143,8 @@ enum class FalseAlarmMark : std::int8_t {
   more,   ///< it lies above
 };
 
-/// "", "fewer", "more"
-std::string_view to_string(FalseAlarmMark mark);
+template <>
+inline constexpr auto kWords<FalseAlarmMark> = word_list("", "fewer", "more");
 
 /// What a rate of false alarms is held against when the method states none.
 inline constexpr double kUsualFalseAlarms = 0.05;

@@ -5,18 +5,6 @@
 
 namespace mpm {
 
-const char* to_string(RepairTarget target) {
-  switch (target) {
-    case RepairTarget::mismatched:
-      return "a mismatched channel";
-    case RepairTarget::another:
-      return "another channel";
-    case RepairTarget::no_mismatch:
-      return "no mismatch";
-  }
-  return "unknown";
-}
-
 RepairTarget target_of(const ExperimentDraw& draw, const Channel& channel) {
   if (draw.mismatches.empty() && draw.parameters.empty())
     return RepairTarget::no_mismatch;

@@ -8,6 +8,7 @@
 #include "analysis/methods/ours/repair_prospects.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
+#include "base/enum_words.hpp"
 
 namespace mpm {
 
@@ -18,8 +19,9 @@ enum class RepairTarget : std::int8_t {
   no_mismatch,  ///< one of a plant that has none: it is a disturbance, or nothing
 };
 
-/// "a mismatched channel", "another channel", "no mismatch"
-const char* to_string(RepairTarget target);
+template <>
+inline constexpr auto kWords<RepairTarget> = word_list("a mismatched channel", "another channel",
+                                                       "no mismatch");
 
 /// What the repair of one experiment came to; the loops must compare.
 struct RepairOutcome {

@@ -250,7 +250,7 @@ class NumberChanges {
           before.find(info.name) == nullptr)
         continue;
       names_.push_back(info.name);
-      collections_.emplace_back(info.label.empty() ? info.name : info.label);
+      collections_.emplace_back(info.heading.empty() ? info.name : info.heading);
     }
   }
 

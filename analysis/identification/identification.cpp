@@ -15,22 +15,6 @@ bool is_usable(IdentificationStatus status) {
          status == IdentificationStatus::at_stability_limit;
 }
 
-std::string to_string(IdentificationStatus status) {
-  switch (status) {
-    case IdentificationStatus::ok:
-      return "ok";
-    case IdentificationStatus::rank_deficient:
-      return "rank deficient";
-    case IdentificationStatus::not_converged:
-      return "not converged";
-    case IdentificationStatus::at_stability_limit:
-      return "at the stability limit";
-    case IdentificationStatus::noise_free:
-      break;
-  }
-  return "noise free";
-}
-
 void require_identification_data(const Eigen::Ref<const Eigen::VectorXd>& y,
                                  const Eigen::Ref<const Eigen::MatrixXd>& u, const ModelOrder& order,
                                  Eigen::Index first_sample) {

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "analysis/identification/polynomial_model.hpp"
+#include "base/enum_words.hpp"
 
 namespace mpm {
 
@@ -25,8 +26,9 @@ enum class IdentificationStatus : std::int8_t {
 /// less certainty (the covariance does not hold at a limit).
 bool is_usable(IdentificationStatus status);
 
-/// "ok", "rank deficient", ...
-std::string to_string(IdentificationStatus status);
+template <>
+inline constexpr auto kWords<IdentificationStatus> = word_list("ok", "rank deficient", "not converged",
+                                                               "at the stability limit", "noise free");
 
 /// A model found in data, with the uncertainty of its coefficients.
 ///

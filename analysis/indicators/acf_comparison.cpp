@@ -105,34 +105,6 @@ ErrorOrigin origin_verdict(const AcfComparison& comparison, double own_share) {
 
 }  // namespace
 
-std::string_view to_string(LoopSpeed speed) {
-  switch (speed) {
-    case LoopSpeed::undetermined:
-      return "undetermined";
-    case LoopSpeed::alike:
-      return "alike";
-    case LoopSpeed::slower:
-      return "slower";
-    case LoopSpeed::faster:
-      return "faster";
-  }
-  return "unknown";
-}
-
-std::string_view to_string(ErrorOrigin origin) {
-  switch (origin) {
-    case ErrorOrigin::none:
-      return "none";
-    case ErrorOrigin::own:
-      return "own";
-    case ErrorOrigin::others:
-      return "others";
-    case ErrorOrigin::both:
-      return "both";
-  }
-  return "unknown";
-}
-
 void AcfComparisonOptions::validate() const {
   if (max_lag < 0) {
     throw InputError("largest lag", fmt::format("{}", max_lag), "0 or more");

@@ -2,15 +2,15 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/indicators/acf_oscillation.hpp"
-#include "analysis/indicators/number_column.hpp"
 #include "analysis/statistics/autocorrelation.hpp"
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
+#include "base/row.hpp"
 
 namespace mpm {
 
@@ -31,8 +31,10 @@ enum class ErrorOrigin : std::int8_t {
   both,    ///< y0_diag lies between the two
 };
 
-std::string_view to_string(LoopSpeed speed);
-std::string_view to_string(ErrorOrigin origin);
+template <>
+inline constexpr auto kWords<LoopSpeed> = word_list("undetermined", "alike", "slower", "faster");
+template <>
+inline constexpr auto kWords<ErrorOrigin> = word_list("none", "own", "others", "both");
 
 /// Options of `compare_autocorrelations`.
 struct AcfComparisonOptions {
@@ -132,8 +134,7 @@ double decay_lag(const Autocorrelation& acf, double level, double band_factor = 
 /// 1 ... max_lag together (Bonferroni): 1.68 for 50 lags and 0.95.
 double simultaneous_band_factor(double confidence, Eigen::Index max_lag);
 
-/// Every number of a comparison, the verdicts as the numbers of their enumerators. The functions themselves
-/// (`AcfFeatures::values`) are none of them.
-std::vector<NumberColumn<AcfComparison>> acf_columns();
+/// Every number of a comparison. The functions themselves (`AcfFeatures::values`) are none of them.
+std::vector<Row<AcfComparison>> acf_rows();
 
 }  // namespace mpm

@@ -69,18 +69,6 @@ double line_at(Turn from, Turn to, Eigen::Index lag) {
 
 }  // namespace
 
-std::string_view to_string(Oscillation oscillation) {
-  switch (oscillation) {
-    case Oscillation::undetermined:
-      return "undetermined";
-    case Oscillation::absent:
-      return "absent";
-    case Oscillation::present:
-      return "present";
-  }
-  return "unknown";
-}
-
 AcfOscillation acf_oscillation(const Autocorrelation& acf, double threshold) {
   if (!(threshold > 0.0 && threshold < 1.0)) {
     throw InputError("threshold of the decay ratio", fmt::format("{}", threshold), "above 0 and below 1");

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 #include "analysis/statistics/autocorrelation.hpp"
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -15,7 +15,8 @@ enum class Oscillation : std::int8_t {
   present,
 };
 
-std::string_view to_string(Oscillation oscillation);
+template <>
+inline constexpr auto kWords<Oscillation> = word_list("undetermined", "absent", "present");
 
 /// What the autocorrelation function says of an oscillation.
 struct AcfOscillation {

@@ -35,15 +35,6 @@ SetpointTrajectories variance_centres(const Study& study, Eigen::Index first, Ei
   return trajectories;
 }
 
-double total_simulation_error(const Diagnosis& diagnosis) {
-  if (diagnosis.cvs.empty())
-    return kNaN;
-  double total = 0.0;
-  for (const CvDiagnosis& cv : diagnosis.cvs)
-    total += cv.sse;
-  return total;
-}
-
 double distance_from_one(double ivar, LocationDistance distance) {
   return distance == LocationDistance::linear ? std::abs(ivar - 1.0) : std::abs(std::log(ivar));
 }

@@ -56,9 +56,6 @@ struct Diagnosis {
   std::vector<CvDiagnosis> cvs = {};
 };
 
-/// TSSE (6.21), the sum of the SSE of all CVs; NaN without a diagnosis of every CV.
-double total_simulation_error(const Diagnosis& diagnosis);
-
 /// |ivar - 1|, or |log ivar|.
 double distance_from_one(double ivar, LocationDistance distance);
 

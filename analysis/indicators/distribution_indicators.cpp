@@ -104,7 +104,7 @@ constexpr std::array<Quantity<CentredSums>, 5> kSums{{
 
 constexpr double kMostPairs = 1e15;  // exact as a double
 
-using DistributionColumns = std::vector<NumberColumn<DistributionIndicators>>;
+using DistributionRows = std::vector<Row<DistributionIndicators>>;
 
 /// The means of the correlations stand twice: `MpmMeans` and `ScatterSum` add up the same numbers.
 void copy_correlations(DistributionIndicators& indicators) {
@@ -114,23 +114,20 @@ void copy_correlations(DistributionIndicators& indicators) {
   indicators.mpm.co_dskn = indicators.means.dskn.co;
 }
 
-/// A column for each quantity of each statistic of one part of the indicators.
+/// A row for each quantity of each statistic of one part of the indicators.
 template <class Part, std::size_t n>
-void append(DistributionColumns& columns, PerStatistic<Part> DistributionIndicators::*part,
+void append(DistributionRows& rows, PerStatistic<Part> DistributionIndicators::*part,
             const std::array<Quantity<Part>, n>& quantities) {
   for (const Statistic<Part>& statistic : kStatistics<Part>) {
     for (const Quantity<Part>& quantity : quantities) {
-      columns.push_back(
-          {std::string(quantity.name) + "_" + statistic.name, quantity.unit,
-           std::string(quantity.meaning) + ", of " + statistic.meaning,
-           [part, z = statistic.member, number = quantity.member](const DistributionIndicators& indicators) {
-             return indicators.*part.*z.*number;
-           },
-           [part, z = statistic.member, number = quantity.member](DistributionIndicators& indicators,
-                                                                  double value) {
-             indicators.*part.*z.*number = value;
-             copy_correlations(indicators);
-           }});
+      const auto lens = path(part, statistic.member, quantity.member);
+      rows.push_back(value_row<double, DistributionIndicators>(
+          {std::string(quantity.name) + "_" + statistic.name,
+           std::string(quantity.meaning) + ", of " + statistic.meaning, quantity.unit},
+          lens, [lens](DistributionIndicators& indicators, double value) {
+            lens(indicators) = value;
+            copy_correlations(indicators);
+          }));
     }
   }
 }
@@ -175,32 +172,31 @@ DistributionIndicators DistributionScanner::compute(const Signal& y, const Signa
   return result;
 }
 
-std::vector<NumberColumn<DistributionIndicators>> distribution_columns() {
-  DistributionColumns columns;
-  append(columns, &DistributionIndicators::means, kMeans);
-  append(columns, &DistributionIndicators::shape, kShapes);
-  columns.push_back({"i_mpm", "1", "I_MPM = max(co_dkts, co_dskn) (6.15)",
-                     [](const DistributionIndicators& indicators) { return indicators.mpm.i_mpm; },
-                     [](DistributionIndicators& indicators, double value) { indicators.mpm.i_mpm = value; }});
-  return columns;
+std::vector<Row<DistributionIndicators>> distribution_rows() {
+  DistributionRows rows;
+  append(rows, &DistributionIndicators::means, kMeans);
+  append(rows, &DistributionIndicators::shape, kShapes);
+  rows.push_back(
+      member_row<double, DistributionIndicators>({"i_mpm", "I_MPM = max(co_dkts, co_dskn) (6.15)"},
+                                                 path(&DistributionIndicators::mpm, &MpmIndicator::i_mpm)));
+  return rows;
 }
 
-std::vector<NumberColumn<DistributionIndicators>> scatter_columns() {
-  DistributionColumns columns;
+std::vector<Row<DistributionIndicators>> scatter_rows() {
+  DistributionRows rows;
   for (const Statistic<CentredSums>& statistic : kStatistics<CentredSums>) {
-    columns.push_back({std::string("scatter_pairs_") + statistic.name, "1",
-                       std::string("number of windows behind the ellipse, of ") + statistic.meaning,
-                       [z = statistic.member](const DistributionIndicators& indicators) {
-                         return static_cast<double>((indicators.scatter_diag.*z).pairs);
-                       },
-                       [z = statistic.member](DistributionIndicators& indicators, double value) {
-                         // What no count can be (a damaged file) is no windows.
-                         const bool count = value >= 0.0 && value <= kMostPairs;
-                         (indicators.scatter_diag.*z).pairs = count ? static_cast<Eigen::Index>(value) : 0;
-                       }});
+    const auto pairs = path(&DistributionIndicators::scatter_diag, statistic.member, &CentredSums::pairs);
+    rows.push_back(value_row<double, DistributionIndicators>(
+        {std::string("scatter_pairs_") + statistic.name,
+         std::string("number of windows behind the ellipse, of ") + statistic.meaning},
+        pairs, [pairs](DistributionIndicators& indicators, double value) {
+          // What no count can be (a damaged file) is no windows.
+          const bool count = value >= 0.0 && value <= kMostPairs;
+          pairs(indicators) = count ? static_cast<Eigen::Index>(value) : 0;
+        }));
   }
-  append(columns, &DistributionIndicators::scatter_diag, kSums);
-  return columns;
+  append(rows, &DistributionIndicators::scatter_diag, kSums);
+  return rows;
 }
 
 }  // namespace mpm

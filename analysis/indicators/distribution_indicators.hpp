@@ -6,8 +6,8 @@
 
 #include "analysis/indicators/moment_scatter.hpp"
 #include "analysis/indicators/mpm_indicator.hpp"
-#include "analysis/indicators/number_column.hpp"
 #include "base/non_finite.hpp"
+#include "base/row.hpp"
 
 namespace mpm {
 
@@ -107,9 +107,9 @@ class DistributionScanner {
 };
 
 /// Every indicator, named quantity_statistic: co_dkts, angle_kts, regression_angle_skn, ..., and i_mpm.
-std::vector<NumberColumn<DistributionIndicators>> distribution_columns();
+std::vector<Row<DistributionIndicators>> distribution_rows();
 
 /// `scatter_diag`, named scatter_quantity_statistic: what a confidence ellipse is made of.
-std::vector<NumberColumn<DistributionIndicators>> scatter_columns();
+std::vector<Row<DistributionIndicators>> scatter_rows();
 
 }  // namespace mpm

@@ -7,32 +7,6 @@
 
 namespace mpm {
 
-std::string_view to_string(AssessmentStatus status) {
-  switch (status) {
-    case AssessmentStatus::ok:
-      return "ok";
-    case AssessmentStatus::not_applicable:
-      return "not applicable";
-    case AssessmentStatus::failed:
-      return "failed";
-    case AssessmentStatus::not_assessed:
-      return "not assessed";
-  }
-  return "unknown";
-}
-
-std::string_view to_string(SizeBound bound) {
-  switch (bound) {
-    case SizeBound::none:
-      return "none";
-    case SizeBound::at_most:
-      return "at most";
-    case SizeBound::at_least:
-      return "at least";
-  }
-  return "unknown";
-}
-
 SizeBound bound_within(double estimate, double first, double last, double share) {
   const double close = share * (last - first);
   if (!std::isfinite(close))

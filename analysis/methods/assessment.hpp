@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
 
@@ -21,8 +22,8 @@ enum class AssessmentStatus : std::int8_t {
   not_assessed = 3,    ///< the method was not asked: the loop did not run to its end, or was left out
 };
 
-/// "ok", "not applicable", "failed", "not assessed"
-std::string_view to_string(AssessmentStatus status);
+template <>
+inline constexpr auto kWords<AssessmentStatus> = word_list("ok", "not applicable", "failed", "not assessed");
 
 /// The verdict of a method on one CV.
 struct CvAssessment {
@@ -47,8 +48,8 @@ struct Channel {
 /// value may lie beyond.
 enum class SizeBound : std::int8_t { none = 0, at_most = 1, at_least = 2 };
 
-/// "none", "at most", "at least"
-std::string_view to_string(SizeBound bound);
+template <>
+inline constexpr auto kWords<SizeBound> = word_list("none", "at most", "at least");
 
 /// Classifies an estimate: a bound if it lies within `share` of the range from one of its ends.
 SizeBound bound_within(double estimate, double first, double last, double share = 1e-6);

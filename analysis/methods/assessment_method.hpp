@@ -9,6 +9,7 @@
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment.hpp"
+#include "base/number_text.hpp"
 #include "scenarios/study/assessment_options.hpp"
 
 // The one interface of all methods that assess a loop, the chain of the thesis among them. A method is one
@@ -34,21 +35,24 @@ struct AssessmentRequirements {
 /// study with monitoring.
 enum class NumberScope { loop, cv, channel, cv_lag, window };
 
-/// A number that a method gives besides its verdicts, as archive, findings, report and gates use it.
-struct AssessmentNumberInfo {
-  std::string
-      name;  ///< in the form of a variable name; in table files after the name of the method and a dot
-  NumberScope scope = NumberScope::cv;
-  std::string meaning;  ///< one line, with its equation
-  std::string unit = "1";
-  /// What the numbers 0, 1, 2, ... stand for; none for a quantity.
-  std::vector<std::string> words = {};
-  /// Least, mean and largest value over the experiments of each kind are findings of a study. Of the whole
-  /// loop only.
-  bool summarised = false;
-  std::string label = {};  ///< for tables, of a number that is summarised: "I_{MPM}"
-  /// An estimate of the loss of variance of each CV: the regression of Ivar_basis (6.22) on it is a finding.
-  bool estimates_ivar_basis = false;
+/// What becomes of a number in the findings of a study.
+enum class NumberFinding {
+  none,
+  summary,    ///< least, mean and largest value over the experiments of each kind; of the whole loop only
+  regression  ///< an estimate of the loss of variance of each CV: that of Ivar_basis (6.22) on it
+};
+
+/// A number that a method gives besides its verdicts, as archive, findings, report and gates use it. In table
+/// files its name stands after that of the method and a dot; its words are those of 0, 1, 2, ...
+struct AssessmentNumberInfo : NumberText {
+  AssessmentNumberInfo(NumberText text, NumberScope of, NumberFinding becomes = NumberFinding::none)
+      : NumberText(std::move(text)), scope(of), finding(becomes) {}
+  AssessmentNumberInfo(std::string called, NumberScope of, std::string means, std::string in = "1",
+                       NumberFinding becomes = NumberFinding::none)
+      : AssessmentNumberInfo({std::move(called), std::move(means), std::move(in)}, of, becomes) {}
+
+  NumberScope scope;
+  NumberFinding finding;
 };
 
 /// A method that has learnt its context and assesses one loop after another. It keeps workspaces between

@@ -12,28 +12,15 @@
 namespace mpm {
 namespace {
 
-const std::vector<std::string>& no_yes() {
-  static const std::vector<std::string> words{"no", "yes"};
-  return words;
-}
-
-std::vector<std::string> mismatch_parameters() {
-  std::vector<std::string> words;
-  for (int value = 0; value <= static_cast<int>(MismatchParameter::sign); ++value)
-    words.emplace_back(to_string(static_cast<MismatchParameter>(value)));
-  return words;
-}
-
 constexpr const char* kMismatchBound = "mismatch_bound";
 
 /// A number of each method that names mismatches, and none that follows from that: archives that were written
 /// before there was one have none.
 AssessmentNumberInfo mismatch_bound_info() {
-  return {kMismatchBound,
-          NumberScope::channel,
-          "the size lies at an end of the range that was searched, and is no more than a bound",
-          "1",
-          {"none", "at_most", "at_least"}};
+  return {
+      {kMismatchBound, "the size lies at an end of the range that was searched, and is no more than a bound",
+       "1", "", numbered({"none", "at_most", "at_least"})},
+      NumberScope::channel};
 }
 
 /// None in an answer that has no such number.
@@ -46,31 +33,31 @@ SizeBound bound_of(double number) {
 
 std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& method) {
   std::vector<AssessmentNumberInfo> numbers;
+  const auto worded = [&](const char* name, NumberScope scope, const char* meaning,
+                          std::vector<NumberWord> words) {
+    numbers.push_back({{name, meaning, "1", "", std::move(words)}, scope});
+  };
   if (method.locates_cvs) {
-    numbers.push_back({"cv_flagged", NumberScope::cv, "the method flags the CV", "1", no_yes()});
-    numbers.push_back({"cv_score", NumberScope::cv, "how far the CV is from being flagged, larger is worse"});
+    worded("cv_flagged", NumberScope::cv, "the method flags the CV", no_yes());
+    numbers.emplace_back("cv_score", NumberScope::cv,
+                         "how far the CV is from being flagged, larger is worse");
   }
   if (method.tells_sources)
-    numbers.push_back({"cv_source",
-                       NumberScope::cv,
-                       "source that the method sees in a flagged CV or the worst one",
-                       "1",
-                       {"none", "mpm", "ud", "mpm_ud", "other"}});
+    worded("cv_source", NumberScope::cv, "source that the method sees in a flagged CV or the worst one",
+           enum_words<FaultSource>());
   if (method.names_channels)
-    numbers.push_back({"channel_flagged", NumberScope::channel, "the method names this channel of the model",
-                       "1", no_yes()});
+    worded("channel_flagged", NumberScope::channel, "the method names this channel of the model", no_yes());
   if (method.names_mismatches) {
-    numbers.push_back({"mismatch_parameter", NumberScope::channel,
-                       "parameter of this channel that the method says is wrong", "1",
-                       mismatch_parameters()});
-    numbers.push_back(
-        {"mismatch_size", NumberScope::channel, "its size, as `mismatch_value` of an experiment is one"});
-    numbers.push_back({"mismatch_lower", NumberScope::channel, "lower end of the interval of the size"});
-    numbers.push_back({"mismatch_upper", NumberScope::channel, "upper end of the interval of the size"});
+    worded("mismatch_parameter", NumberScope::channel,
+           "parameter of this channel that the method says is wrong", enum_words<MismatchParameter>());
+    numbers.emplace_back("mismatch_size", NumberScope::channel,
+                         "its size, as `mismatch_value` of an experiment is one");
+    numbers.emplace_back("mismatch_lower", NumberScope::channel, "lower end of the interval of the size");
+    numbers.emplace_back("mismatch_upper", NumberScope::channel, "upper end of the interval of the size");
   }
   if (method.names_candidates)
-    numbers.push_back({"named_candidate", NumberScope::loop,
-                       "position of the logged signal that the method says drives the disturbance"});
+    numbers.emplace_back("named_candidate", NumberScope::loop,
+                         "position of the logged signal that the method says drives the disturbance");
   return numbers;
 }
 
@@ -82,7 +69,8 @@ AssessmentForm::AssessmentForm(MethodDescription method, const Study& study) : m
   for (const AssessmentNumberInfo& info : method_.numbers)
     add(info, study);
   if (study.monitoring) {
-    add({"window_flagged", NumberScope::window, "the method flags the loop in this window", "1", no_yes()},
+    add({{"window_flagged", "the method flags the loop in this window", "1", "", no_yes()},
+         NumberScope::window},
         study);
     add({"window_score", NumberScope::window, "its score in this window, larger is worse"}, study);
   }
@@ -146,6 +134,15 @@ void AssessmentRecord::set_number(std::string_view name, double value, Eigen::In
   const NumberPlace* const place = form->find(name);
   assert(place != nullptr && row < place->rows && column < place->columns);
   numbers(place->first + row * place->columns + column) = value;
+}
+
+bool AssessmentRecord::flags(Eigen::Index cv) const {
+  return number("cv_flagged", cv) == 1.0;
+}
+
+FaultSource AssessmentRecord::source_on(Eigen::Index cv) const {
+  const double source = flags(cv) ? number("cv_source", cv) : kNaN;
+  return std::isnan(source) ? FaultSource::none : static_cast<FaultSource>(static_cast<int>(source));
 }
 
 bool AssessmentRecord::names(const Channel& channel) const {

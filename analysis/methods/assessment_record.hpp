@@ -96,6 +96,10 @@ struct AssessmentRecord {
   Eigen::MatrixXd values(std::string_view name) const;
   /// Puts a number in its place, which must be there.
   void set_number(std::string_view name, double value, Eigen::Index row = 0, Eigen::Index column = 0);
+  /// Whether the method flags this CV.
+  bool flags(Eigen::Index cv) const;
+  /// The source that it sees in a flagged CV.
+  FaultSource source_on(Eigen::Index cv) const;
   /// Whether the method names this channel.
   bool names(const Channel& channel) const;
   /// The mismatch that it names; none: it names none, or gave no verdict.

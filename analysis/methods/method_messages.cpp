@@ -127,14 +127,10 @@ class AnswerReader {
   }
 
   template <class Enum>
-  Enum word(const char* key, const Json& value, Enum last) const {
-    std::vector<std::string_view> words;
-    for (int each = 0; each <= static_cast<int>(last); ++each) {
-      words.push_back(to_string(static_cast<Enum>(each)));
-      if (value.is_string() && value.get<std::string>() == words.back())
-        return static_cast<Enum>(each);
-    }
-    refuse(key, value, fmt::format("{}", fmt::join(words, ", ")));
+  Enum word(const char* key, const Json& value) const {
+    if (const auto found = enumerator<Enum>(value.is_string() ? value.get<std::string>() : ""))
+      return *found;
+    refuse(key, value, fmt::format("{}", fmt::join(kWords<Enum>, ", ")));
   }
 
   const Json& list(const char* key, const Json& value, std::size_t length) const {
@@ -167,7 +163,7 @@ class AnswerReader {
       if (std::isnan(of_cv.score))
         of_cv.score = *of_cv.flagged ? 1.0 : 0.0;
       if (sources != nullptr && !list("cv_source", *sources, count)[i].is_null())
-        of_cv.source = word("cv_source", (*sources)[i], FaultSource::other);
+        of_cv.source = word<FaultSource>("cv_source", (*sources)[i]);
     }
     if (cv == nullptr)
       return;
@@ -177,7 +173,7 @@ class AnswerReader {
     named.flagged = assessment.flagged;
     named.score = std::isnan(assessment.score) ? 0.0 : assessment.score;
     if (source != nullptr)
-      named.source = word("source", *source, FaultSource::other);
+      named.source = word<FaultSource>("source", *source);
   }
 
   Channel channel(const char* key, const Json& value) const {
@@ -204,8 +200,8 @@ class AnswerReader {
     refuse_unknown(*mismatch, {"channel", "parameter", "size", "lower", "upper"});
     const auto size = [&](const char* key) { return number(key, mismatch->value(key, Json())); };
     assessment.named_mismatch = {channel("mismatch", mismatch->at("channel")),
-                                 word("mismatch", mismatch->at("parameter"), MismatchParameter::sign),
-                                 size("size"), size("lower"), size("upper")};
+                                 word<MismatchParameter>("mismatch", mismatch->at("parameter")), size("size"),
+                                 size("lower"), size("upper")};
   }
 
   void read_candidate(const Json& answer, Assessment& assessment) const {

@@ -76,9 +76,8 @@ void read_flags(const JsonEntry& description, const char* key, const Flags& flag
 
 AssessmentNumberInfo number_info(const JsonEntry& entry) {
   entry.require_keys({"name", "scope", "meaning", "unit"});
-  AssessmentNumberInfo info{.name = text_or(entry, "name", ""),
-                            .meaning = text_or(entry, "meaning", ""),
-                            .unit = text_or(entry, "unit", "1")};
+  AssessmentNumberInfo info{text_or(entry, "name", ""), NumberScope::loop, text_or(entry, "meaning", ""),
+                            text_or(entry, "unit", "1")};
   entry.at("name").require(
       !info.name.empty() &&
           info.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz_0123456789") == std::string::npos,
@@ -86,8 +85,6 @@ AssessmentNumberInfo number_info(const JsonEntry& entry) {
   constexpr std::array kScopes{NumberScope::loop, NumberScope::cv, NumberScope::channel};
   if (const std::optional<JsonEntry> scope = entry.find("scope"))
     info.scope = kScopes[scope->one_of({"loop", "cv", "channel"})];
-  else
-    info.scope = NumberScope::loop;
   return info;
 }
 

@@ -52,8 +52,8 @@ std::vector<TableQuantity> all_quantities() {
                                         {"rpn_frequency", QuantityScope::loop},
                                         {"rpn_lowest_peak", QuantityScope::loop},
                                         {"rpn_maximum", QuantityScope::loop}};
-  for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
-    quantities.push_back({column.name});
+  for (const Row<DistributionIndicators>& row : distribution_rows())
+    quantities.push_back({row.text.name});
   for (const AssessmentMethodInfo& method : shipped_methods().methods())
     add_method_quantities(method, quantities);
   return quantities;
@@ -111,9 +111,9 @@ double ScenarioQuantities::value(const std::string& name, Eigen::Index cv, Eigen
     return interaction().rpn_maximum;
   if (name == "rga_diagonal")
     return relative_gain(cv);
-  for (const NumberColumn<DistributionIndicators>& column : distribution_columns())
-    if (column.name == name)
-      return column.value(cvs()[static_cast<std::size_t>(cv)].distribution);
+  for (const Row<DistributionIndicators>& row : distribution_rows())
+    if (row.text.name == name)
+      return numbers_of(row, cvs()[static_cast<std::size_t>(cv)].distribution).front();
   return kNone;
 }
 

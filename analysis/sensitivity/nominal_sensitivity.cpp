@@ -126,18 +126,6 @@ Eigen::MatrixXd directed_response(const Study& study, const OperatingPoint& poin
 
 }  // namespace
 
-std::string_view to_string(ConstraintKind kind) {
-  switch (kind) {
-    case ConstraintKind::lower_limit:
-      return "lower limit";
-    case ConstraintKind::upper_limit:
-      return "upper limit";
-    case ConstraintKind::setpoint:
-      return "setpoint";
-  }
-  return "unknown";
-}
-
 OperatingPoint operating_point(const Study& study, const QpSolverFactory& factory) {
   Mpc controller(study.plant.G, study.mv_count(), study.controller, factory);
   controller.set_setpoints(study.simulation.initial_setpoint);

@@ -2,11 +2,11 @@
 
 #include <compare>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
@@ -16,8 +16,8 @@ namespace mpm {
 /// What the controller holds a CV at.
 enum class ConstraintKind : std::int8_t { lower_limit = 0, upper_limit = 1, setpoint = 2 };
 
-/// "lower limit", "upper limit" or "setpoint".
-std::string_view to_string(ConstraintKind kind);
+template <>
+inline constexpr auto kWords<ConstraintKind> = word_list("lower limit", "upper limit", "setpoint");
 
 /// A CV at its setpoint, or at one of its soft limits.
 struct ActiveConstraint {

@@ -12,9 +12,10 @@
 #include <fmt/ranges.h>
 
 #include "base/error.hpp"
+#include "base/same_members.hpp"
 #include "base/system/surroundings.hpp"
 #include "bench/execution/experiment_work.hpp"
-#include "results/archive/columns.hpp"
+#include "results/archive/loop_rows.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "solvers/qp_solver_factory.hpp"
 
@@ -58,14 +59,9 @@ std::vector<std::string> audit_differences(const ExperimentOutcome& one, const E
   for (const AuditedStep& here : one.audited)
     for (const AuditedStep& there : other.audited)
       if (!earlier(here, there) && !earlier(there, here))
-        for (const Column<AuditedStep>& column : audit_columns())
-          std::visit(
-              [&](const auto& access) {
-                const auto found = access.get(here), again = access.get(there);
-                if (found != again && (found == found || again == again))  // NaN: no answer
-                  names.push_back(fmt::format("audit of step {}: {}", here.step, column.text.name));
-              },
-              column.access);
+        for (const Row<AuditedStep>& row : audit_rows())
+          if (!same(numbers_of(row, here).front(), numbers_of(row, there).front()))  // NaN: no answer
+            names.push_back(fmt::format("audit of step {}: {}", here.step, row.text.name));
   return names;
 }
 

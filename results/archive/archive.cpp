@@ -26,7 +26,9 @@ Campaign read_groups(const std::filesystem::path& path, RecordPlace place) {
   const Study& study = campaign.study;
   campaign.methods = read_methods(root, study, file);
   campaign.study.methods = method_names(campaign);
-  const auto reader = std::make_shared<const ArchiveRecordReader>(root, study, forms_of(campaign), file);
+  const AssessmentForms forms = forms_of(campaign);
+  const auto reader =
+      std::make_shared<const ArchiveRecordReader>(root, study, forms, record_tables(study, forms), file);
   if (place == RecordPlace::file && !study.names_scenarios())
     campaign.streamed = streamed(reader);
   else
@@ -45,7 +47,7 @@ void write_groups(const std::filesystem::path& path, const std::string& name, co
   const Hdf5File file = Hdf5File::create_at(path, name);
   Hdf5Group root = file.root();
   write_heading(root, campaign);
-  write_records(root, campaign);
+  write_records(root, campaign, record_tables(campaign.study, forms_of(campaign)));
   write_methods(root, campaign, findings);
   write_scenarios(root, campaign);
   write_basis(root, campaign.study, campaign.basis);

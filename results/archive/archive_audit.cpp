@@ -1,8 +1,8 @@
 #include <numeric>
 
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/columns.hpp"
-#include "results/archive/variable_text.hpp"
+#include "results/archive/loop_rows.hpp"
+#include "results/archive/row_io.hpp"
 
 namespace mpm {
 namespace {
@@ -20,11 +20,7 @@ void write_audit(Hdf5Group& root, const std::vector<AuditedStep>& audit) {
   std::vector<std::int64_t> numbers(audit.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   group.write_dimension(kDimension, numbers, attributes<std::int64_t>({kDimension, "audited step"}));
-  std::vector<const AuditedStep*> steps;
-  steps.reserve(audit.size());
-  for (const AuditedStep& step : audit)
-    steps.push_back(&step);
-  write_columns(group, {kDimension}, audit_columns(), steps);
+  store_rows(group, {kDimension}, audit_rows(), audit);
 }
 
 std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& file) {
@@ -32,11 +28,7 @@ std::vector<AuditedStep> read_audit(const Hdf5Group& root, const std::string& fi
     return {};
   const Hdf5Group group = root.group(kAuditGroup);
   std::vector<AuditedStep> audit(group.read_list<std::int64_t>(kDimension).size());
-  std::vector<AuditedStep*> steps;
-  steps.reserve(audit.size());
-  for (AuditedStep& step : audit)
-    steps.push_back(&step);
-  read_columns(group, {audit.size()}, audit_columns(), steps, file);
+  load_rows(group, audit_rows(), audit, file);
   return audit;
 }
 

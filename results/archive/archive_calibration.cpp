@@ -6,8 +6,7 @@
 #include <fmt/format.h>
 
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/columns.hpp"
-#include "results/archive/variable_text.hpp"
+#include "results/archive/row_io.hpp"
 #include "results/files/archive_error.hpp"
 #include "scenarios/loop/calibration.hpp"
 
@@ -17,14 +16,18 @@ namespace {
 constexpr const char* kCalibrationGroup = "calibration";
 constexpr const char* kLoopDimension = "loop";
 
-VariableText kind_text() {
-  return {"kind", "what is wrong in the loop", "1", "",
-          enum_flags(std::array{ExperimentKind::healthy, ExperimentKind::ud})};
-}
-
-VariableText score_text() {
-  return {"score", "how far the loop is from being flagged, larger is worse", "1",
-          "NaN: no verdict; -infinity: a verdict without a score"};
+std::vector<Row<CalibrationLoop>> loop_score_rows(std::size_t methods) {
+  const auto itself = [](auto& score) -> auto& {
+    return score;
+  };
+  return {member_row<std::int8_t>({"kind", "what is wrong in the loop", "1", "",
+                                   enum_words(std::array{ExperimentKind::healthy, ExperimentKind::ud})},
+                                  &CalibrationLoop::kind),
+          of_each<CalibrationLoop>(
+              member_row<double, double>({"score", "how far the loop is from being flagged, larger is worse",
+                                          "1", "NaN: no verdict; -infinity: a verdict without a score"},
+                                         itself),
+              "method", methods, &CalibrationLoop::scores)};
 }
 
 /// Throws ArchiveError when a property of the group is not that of the study.
@@ -50,14 +53,7 @@ void write_calibration(Hdf5Group& root, const Campaign& campaign) {
                         attributes<std::int64_t>({kLoopDimension, "number of the loop"}));
   group.write_dimension("method", method_names(campaign),
                         attributes<std::string>({"method", "method of assessment"}));
-  std::vector<std::int8_t> kinds;
-  std::vector<double> scores;
-  for (const CalibrationLoop& loop : loops) {
-    kinds.push_back(static_cast<std::int8_t>(loop.kind));
-    scores.insert(scores.end(), loop.scores.begin(), loop.scores.end());
-  }
-  group.write("kind", {kLoopDimension}, kinds, attributes<std::int8_t>(kind_text()));
-  group.write("score", {kLoopDimension, "method"}, scores, attributes<double>(score_text()));
+  store_rows(group, {kLoopDimension}, loop_score_rows(campaign.methods.size()), loops);
 }
 
 Calibration read_calibration(const Hdf5Group& root, const Campaign& campaign, const std::string& file) {
@@ -73,15 +69,8 @@ Calibration read_calibration(const Hdf5Group& root, const Campaign& campaign, co
                     kCalibrationGroup));
   const auto count = static_cast<std::size_t>(expected.experiment_count());
   require_equal(group.read_list<std::int64_t>(kLoopDimension).size(), count, "number of loops", file);
-  const std::vector<std::int8_t> kinds = group.read<std::int8_t>("kind", {count});
-  require_flags(kind_text(), kinds, file);
-  const std::size_t methods = campaign.methods.size();
-  const std::vector<double> scores = group.read<double>("score", {count, methods});
-  for (std::size_t loop = 0; loop < count; ++loop) {
-    const auto begin = scores.begin() + static_cast<std::ptrdiff_t>(loop * methods);
-    calibration.loops.push_back(
-        {static_cast<ExperimentKind>(kinds[loop]), {begin, begin + static_cast<std::ptrdiff_t>(methods)}});
-  }
+  calibration.loops.resize(count);
+  load_rows(group, loop_score_rows(campaign.methods.size()), calibration.loops, file);
   return calibration;
 }
 

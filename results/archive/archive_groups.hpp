@@ -6,6 +6,7 @@
 
 #include "results/archive/campaign.hpp"
 #include "results/archive/hdf5_file.hpp"
+#include "results/archive/record_tables.hpp"
 
 namespace mpm {
 
@@ -18,14 +19,9 @@ void write_heading(Hdf5Group& root, const Campaign& campaign);
 /// Checks that the file is an archive of this version, and reads study and info.
 Campaign read_heading(const Hdf5Group& root, const std::string& file);
 
-/// Every table of record_tables(): the root group, /methods/NAME, /trajectories (no such group when no loop
+/// The tables of record_tables(): the root group, /methods/NAME, /trajectories (no such group when no loop
 /// was kept) and /s0_perturbation. They are read by ArchiveRecordReader.
-void write_records(Hdf5Group& root, const Campaign& campaign);
-
-/// The numbers of one assessment as variables of a group that has the dimensions `cv` and `lag`; `assessment`
-/// must have its form, and the status ok.
-void write_numbers(Hdf5Group& group, const AssessmentRecord& assessment);
-void read_numbers(const Hdf5Group& group, AssessmentRecord& assessment, const std::string& file);
+void write_records(Hdf5Group& root, const Campaign& campaign, const std::vector<RecordTable>& tables);
 
 /// Attributes of /methods/NAME: who the methods are. Their groups have been written.
 void write_methods(Hdf5Group& root, const Campaign& campaign, const StudyFindings& findings);

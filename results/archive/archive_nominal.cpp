@@ -7,8 +7,7 @@
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "results/archive/archive_groups.hpp"
 #include "results/archive/dimensions.hpp"
-#include "results/archive/matrix_io.hpp"
-#include "results/archive/variable_text.hpp"
+#include "results/archive/row_io.hpp"
 #include "results/files/archive_error.hpp"
 
 namespace mpm {
@@ -17,14 +16,22 @@ namespace {
 constexpr const char* kNominalGroup = "nominal";
 constexpr const char* kFixedGroup = "nominal_fixed";
 constexpr const char* kDirectGroup = "nominal_direct";
-constexpr const char* kResponse = "t0_step_response";
 
-VariableText side_text() {
-  return {"side",
-          "soft limit or setpoint that the CV is at",
-          "1",
-          "",
-          {{0, 1, 2}, {"lower", "upper", "setpoint"}}};
+/// The response to a step of one CV that is held.
+struct SteppedCv {
+  ConstraintKind side = ConstraintKind::lower_limit;
+  Eigen::MatrixXd response = {};
+};
+
+std::vector<Row<SteppedCv>> stepped_rows(const Study& study, Eigen::Index lags) {
+  return {member_row<std::int8_t>({"side", "soft limit or setpoint that the CV is at", "1", "",
+                                   numbered({"lower", "upper", "setpoint"})},
+                                  &SteppedCv::side),
+          matrix_row<SteppedCv>(
+              {"t0_step_response", "response of cv to a unit step of the limit or setpoint of active_cv", "1",
+               "in the unit of cv per unit of active_cv; stays at its last value"},
+              {"cv", "lag"}, study.cv_count(), lags, &SteppedCv::response)
+              .along("time")};
 }
 
 Eigen::Index position(const Study& study, const std::string& name, const char* group,
@@ -37,54 +44,35 @@ Eigen::Index position(const Study& study, const std::string& name, const char* g
   return found - cvs.begin();
 }
 
-ConstraintKind constraint_kind(std::int8_t side, const char* group, const std::string& file) {
-  if (side < 0 || side > static_cast<std::int8_t>(ConstraintKind::setpoint))
-    throw ArchiveError(fmt::format("{}: '/{}/side': found {}; allowed: 0, 1 or 2", file, group, side));
-  return static_cast<ConstraintKind>(side);
-}
-
 void write_sensitivity(Hdf5Group& group, const std::string& title, const Study& study,
                        const NominalSensitivity& sensitivity) {
   group.write_attribute("title", title);
   std::vector<PlantModel::Variable> active;
-  std::vector<std::int8_t> side;
-  std::vector<const Eigen::MatrixXd*> responses;
+  std::vector<SteppedCv> stepped;
   for (std::size_t a = 0; a < sensitivity.active.size(); ++a) {
     active.push_back(study.plant.cvs[static_cast<std::size_t>(sensitivity.active[a].cv)]);
-    side.push_back(static_cast<std::int8_t>(sensitivity.active[a].kind));
-    responses.push_back(&sensitivity.step_response[a]);
+    stepped.push_back({sensitivity.active[a].kind, sensitivity.step_response[a]});
   }
-  const Eigen::Index lags = responses.empty() ? study.sensitivity.samples : responses.front()->cols();
+  const Eigen::Index lags = stepped.empty() ? study.sensitivity.samples : stepped.front().response.cols();
   write_variable_dimension(group, "active_cv", "CV at a soft limit or a setpoint, which is stepped", active);
   write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);
   write_sample_dimension(group, "lag", "samples after the step", "time", study, 1, lags);
-  group.write("side", {"active_cv"}, side, attributes<std::int8_t>(side_text()));
-  write_matrices(group, {"active_cv", "cv", "lag"},
-                 {kResponse,
-                  "response of cv to a unit step of the limit or setpoint of active_cv",
-                  "1",
-                  "in the unit of cv per unit of active_cv; stays at its last value",
-                  {},
-                  "time"},
-                 responses, study.cv_count(), lags);
+  store_rows(group, {"active_cv"}, stepped_rows(study, lags), stepped);
 }
 
 NominalSensitivity read_sensitivity(const Hdf5Group& root, const char* name, const Study& study,
                                     const std::string& file) {
   const Hdf5Group group = root.group(name);
   const std::vector<std::string> active = group.read_list<std::string>("active_cv");
-  const std::vector<std::int8_t> side = group.read<std::int8_t>("side", {active.size()});
   const auto lags = static_cast<Eigen::Index>(group.read_list<std::int32_t>("lag").size());
+  std::vector<SteppedCv> stepped(active.size());
+  load_rows(group, stepped_rows(study, lags), stepped, file);
   NominalSensitivity sensitivity;
   sensitivity.cv_count = study.cv_count();
-  sensitivity.step_response.resize(active.size());
-  std::vector<Eigen::MatrixXd*> responses;
   for (std::size_t a = 0; a < active.size(); ++a) {
-    sensitivity.active.push_back(
-        {position(study, active[a], name, file), constraint_kind(side[a], name, file)});
-    responses.push_back(&sensitivity.step_response[a]);
+    sensitivity.active.push_back({position(study, active[a], name, file), stepped[a].side});
+    sensitivity.step_response.push_back(stepped[a].response);
   }
-  read_matrices(group, kResponse, true, responses, study.cv_count(), lags);
   return sensitivity;
 }
 
@@ -120,10 +108,12 @@ void write_nominal_direct(Hdf5Group& root, const Study& study, const BasisCase& 
   write_sensitivity(group, "T0 as direct step responses, beside the identified one of /nominal", study,
                     *basis.sensitivity_direct);
   const Eigen::VectorXd largest = largest_differences(basis.sensitivity, *basis.sensitivity_direct);
-  write_vectors(group, {"active_cv"},
-                {"largest_difference", "largest difference of identified and direct step responses", "1",
-                 "in the units of t0_step_response"},
-                {&largest}, largest.size());
+  store_rows<double>(group, {"active_cv"},
+                     {member_row<double, double>(
+                         {"largest_difference", "largest difference of identified and direct step responses",
+                          "1", "in the units of t0_step_response"},
+                         [](auto& number) -> auto& { return number; })},
+                     {largest.begin(), largest.end()});
 }
 
 std::optional<NominalSensitivity> read_nominal_direct(const Hdf5Group& root, const Study& study,

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/columns.hpp"
+#include "results/archive/row_io.hpp"
 #include "results/files/archive_error.hpp"
 #include "scenarios/loop/draw.hpp"
 
@@ -33,20 +33,20 @@ struct Rows {
   std::vector<ExperimentRecord*> records;
   std::size_t first, all;  ///< in the file
 
-  void read(const Hdf5Group& group, const RecordVariable& variable, const std::string& file) const {
+  void read(const Hdf5Group& group, const RecordRow& row, const std::string& file) const {
     std::vector<std::size_t> shape{all};
-    shape.insert(shape.end(), variable.shape.begin(), variable.shape.end());
+    shape.insert(shape.end(), row.shape.begin(), row.shape.end());
     std::visit(
-        [&]<class T>(const RecordAccess<T>& access) {
-          const std::vector<T> values = group.read_rows<T>(variable.text.name, shape, first, records.size());
-          require_flags(variable.text, values, file);
+        [&]<class T>(const RowAccess<ExperimentRecord, T>& access) {
+          const std::vector<T> values = group.read_rows<T>(row.text.name, shape, first, records.size());
+          require_words(row.text, values, file);
           const T* place = values.data();
           for (ExperimentRecord* record : records) {
             access.set(*record, place);
-            place += variable.size();
+            place += row.size();
           }
         },
-        variable.access);
+        row.access);
   }
 };
 
@@ -148,19 +148,20 @@ std::vector<std::size_t> places_along(const Hdf5Group& group, const RecordTable&
 std::size_t bytes_of(const std::vector<RecordTable>& tables) {
   std::size_t bytes = sizeof(ExperimentRecord);
   for (const RecordTable& table : tables)
-    for (const RecordVariable& variable : table.variables)
-      bytes += variable.size() * sizeof(double);
+    for (const RecordRow& row : table.rows)
+      bytes += row.size() * sizeof(double);
   return bytes;
 }
 
 }  // namespace
 
 ArchiveRecordReader::ArchiveRecordReader(const Hdf5Group& root, const Study& study,
-                                         const AssessmentForms& forms, std::string file)
+                                         const AssessmentForms& forms, std::vector<RecordTable> tables,
+                                         std::string file)
     : study_(study),
       file_(std::move(file)),
       indices_(root.read_list<std::int64_t>("experiment")),
-      tables_(record_tables(study_, forms)),
+      tables_(std::move(tables)),
       milliseconds_(read_method_times(root, forms)) {
   require_order(indices_, file_);
   std::erase_if(tables_, [&root](const RecordTable& table) {
@@ -170,8 +171,8 @@ ArchiveRecordReader::ArchiveRecordReader(const Hdf5Group& root, const Study& stu
   for (RecordTable& table : tables_) {
     groups_.push_back(group_at(root, table.group));
     const std::vector<std::string> names = groups_.back().variables();
-    std::erase_if(table.variables, [&names](const RecordVariable& variable) {
-      return variable.may_lack && std::find(names.begin(), names.end(), variable.text.name) == names.end();
+    std::erase_if(table.rows, [&names](const RecordRow& row) {
+      return row.since > 0 && std::find(names.begin(), names.end(), row.text.name) == names.end();
     });
     std::vector<std::size_t> places = places_along(groups_.back(), table, indices_, file_);
     if (table.has)
@@ -219,9 +220,9 @@ void ArchiveRecordReader::read_table(std::size_t t, std::size_t first,
   if (table.make)
     for (ExperimentRecord* record : rows.records)
       table.make(*record);
-  for (const RecordVariable& variable : table.variables)
-    if (variable.use == RecordUse::everywhere)
-      rows.read(groups_[t], variable, file_);
+  for (const RecordRow& row : table.rows)
+    if (row.use == RowUse::everywhere)
+      rows.read(groups_[t], row, file_);
 }
 
 RecordRange streamed(std::shared_ptr<const ArchiveRecordReader> reader) {

@@ -19,9 +19,9 @@ namespace mpm {
 /// comes when it is read.
 class ArchiveRecordReader {
  public:
-  /// `root` is that of the archive of this study; `file` is for messages.
+  /// `root` is that of the archive of this study, which has these tables; `file` is for messages.
   ArchiveRecordReader(const Hdf5Group& root, const Study& study, const AssessmentForms& forms,
-                      std::string file);
+                      std::vector<RecordTable> tables, std::string file);
 
   std::size_t size() const { return indices_.size(); }
   /// How many are best read at a time.

@@ -1,6 +1,5 @@
 // The records of the experiments: every table of record_tables(), each in its group.
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
@@ -9,23 +8,18 @@
 #include <fmt/format.h>
 
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/columns.hpp"
 #include "results/archive/dimensions.hpp"
-#include "results/archive/record_tables.hpp"
+#include "results/archive/row_io.hpp"
 
 namespace mpm {
 namespace {
-
-bool stands_in(const RecordTable& table, const ExperimentRecord& record) {
-  return !table.has || table.has(record);
-}
 
 /// How many experiments stand in each table.
 std::vector<std::size_t> lengths_of(const std::vector<RecordTable>& tables, const RecordRange& records) {
   std::vector<std::size_t> lengths(tables.size(), 0);
   records.each([&](const ExperimentRecord& record) {
     for (std::size_t t = 0; t < tables.size(); ++t)
-      lengths[t] += stands_in(tables[t], record) ? 1 : 0;
+      lengths[t] += tables[t].covers(record) ? 1 : 0;
   });
   return lengths;
 }
@@ -93,22 +87,22 @@ VariableWriter writer_of(Hdf5Rows<T> rows, const Write& write) {
 
 /// The indices of the experiments that stand in a table.
 VariableWriter index_writer(Hdf5Group& group, const RecordTable& table, std::size_t length) {
-  const VariableText text{table.dimension, "index of the experiment in the study"};
+  const NumberText text{table.dimension, "index of the experiment in the study"};
   return writer_of(
       group.create_dimension<std::int64_t>(table.dimension, length, attributes<std::int64_t>(text)),
       [](const ExperimentRecord& record, std::int64_t* place) { *place = record.draw.index; });
 }
 
-/// `variable` must outlive it.
-VariableWriter variable_writer(Hdf5Group& group, const RecordTable& table, const RecordVariable& variable) {
+/// `row` must outlive it.
+VariableWriter variable_writer(Hdf5Group& group, const RecordTable& table, const RecordRow& row) {
   std::vector<std::string> dimensions{table.dimension};
-  dimensions.insert(dimensions.end(), variable.dimensions.begin(), variable.dimensions.end());
+  dimensions.insert(dimensions.end(), row.dimensions.begin(), row.dimensions.end());
   return std::visit(
-      [&]<class T>(const RecordAccess<T>& access) {
-        return writer_of(group.create_rows<T>(variable.text.name, dimensions, attributes<T>(variable.text)),
+      [&]<class T>(const RowAccess<ExperimentRecord, T>& access) {
+        return writer_of(group.create_rows<T>(row.text.name, dimensions, attributes<T>(row)),
                          [&access](const ExperimentRecord& record, T* place) { access.get(record, place); });
       },
-      variable.access);
+      row.access);
 }
 
 /// The variables of a table.
@@ -117,24 +111,17 @@ struct TableWriter {
   std::vector<VariableWriter> variables = {};
 
   void add(const ExperimentRecord& record) const {
-    if (stands_in(*table, record))
+    if (table->covers(record))
       for (const VariableWriter& variable : variables)
         variable.add(record);
   }
 };
 
-/// A number that the method itself gives, not one that follows from what it tells.
-bool is_own(const AssessmentRecord& assessment, const std::string& name) {
-  const std::vector<AssessmentNumberInfo>& numbers = assessment.form->method().numbers;
-  return std::any_of(numbers.begin(), numbers.end(), [&](const auto& number) { return number.name == name; });
-}
-
 }  // namespace
 
-void write_records(Hdf5Group& root, const Campaign& campaign) {
+void write_records(Hdf5Group& root, const Campaign& campaign, const std::vector<RecordTable>& tables) {
   std::map<std::string, Hdf5Group> groups{{"", root}};
   std::map<std::string, std::set<std::string>> dimensions;  // of each group
-  const std::vector<RecordTable> tables = record_tables(campaign.study, forms_of(campaign));
   const RecordRange records = records_of(campaign);
   const std::vector<std::size_t> lengths = lengths_of(tables, records);
   std::vector<TableWriter> writers;
@@ -153,13 +140,13 @@ void write_records(Hdf5Group& root, const Campaign& campaign) {
       for (const char* name : {"cv", "mv", "md", "method"})
         if (known.insert(name).second)
           write_dimension(group, name, campaign);
-    for (const RecordVariable& variable : table.variables) {
-      if (variable.use == RecordUse::bytes_only)
+    for (const RecordRow& row : table.rows) {
+      if (row.use == RowUse::bytes_only)
         continue;
-      for (const std::string& name : variable.dimensions)
+      for (const std::string& name : row.dimensions)
         if (known.insert(name).second)
           write_dimension(group, name, campaign);
-      writer.variables.push_back(variable_writer(group, table, variable));
+      writer.variables.push_back(variable_writer(group, table, row));
     }
   }
   records.each([&](const ExperimentRecord& record) {
@@ -169,35 +156,6 @@ void write_records(Hdf5Group& root, const Campaign& campaign) {
   for (const TableWriter& writer : writers)
     for (const VariableWriter& variable : writer.variables)
       variable.finish();
-}
-
-void write_numbers(Hdf5Group& group, const AssessmentRecord& assessment) {
-  ExperimentRecord holder;
-  holder.assessments = {assessment};
-  for (const RecordVariable& variable : method_table(*assessment.form, 0).variables)
-    if (is_own(assessment, variable.text.name))
-      std::visit(
-          [&]<class T>(const RecordAccess<T>& access) {
-            std::vector<T> values(variable.size());
-            access.get(holder, values.data());
-            group.write(variable.text.name, variable.dimensions, values, attributes<T>(variable.text));
-          },
-          variable.access);
-}
-
-void read_numbers(const Hdf5Group& group, AssessmentRecord& assessment, const std::string& file) {
-  ExperimentRecord holder;
-  holder.assessments = {assessment};
-  for (const RecordVariable& variable : method_table(*assessment.form, 0).variables)
-    if (is_own(assessment, variable.text.name))
-      std::visit(
-          [&]<class T>(const RecordAccess<T>& access) {
-            const std::vector<T> values = group.read<T>(variable.text.name, variable.shape);
-            require_flags(variable.text, values, file);
-            access.set(holder, values.data());
-          },
-          variable.access);
-  assessment = std::move(holder.assessments.front());
 }
 
 }  // namespace mpm

@@ -1,4 +1,6 @@
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -6,22 +8,12 @@
 #include "analysis/findings/s0_perturbation_curves.hpp"
 #include "results/archive/archive_groups.hpp"
 #include "results/archive/dimensions.hpp"
-#include "results/archive/variable_text.hpp"
+#include "results/archive/row_io.hpp"
 
 namespace mpm {
 namespace {
 
 constexpr const char* kPerturbationGroup = "s0_perturbation";
-
-/// One number of each item along `dimension`.
-template <class Item, class Get>
-void write_each(Hdf5Group& group, const std::string& dimension, const VariableText& text,
-                const std::vector<Item>& items, Get get) {
-  std::vector<double> values;
-  for (const Item& item : items)
-    values.push_back(get(item));
-  group.write(text.name, {dimension}, values, attributes<double>(text));
-}
 
 /// A dimension along the CVs of the items.
 template <class Item>
@@ -33,68 +25,70 @@ void write_cv_dimension(Hdf5Group& group, const std::string& name, const std::st
   write_variable_dimension(group, name, long_name, cvs);
 }
 
+template <class Fit>
+Row<Fit> fit_row(const char* name, const char* meaning, const std::string& unit, auto... lens) {
+  return member_row<double, Fit>({name, meaning, unit, "NaN: no fit"}, path(lens...));
+}
+
 void write_fits(Hdf5Group& group, const Study& study, const NominalSensitivity& sensitivity) {
   const std::vector<DiagonalFit> fits = diagonal_fits(sensitivity, study.controller.sample_time);
-  const std::string time = unit_text(study.plant.time_unit);
-  const std::string along = "active_cv";
+  const char* const along = "active_cv";
+  const auto model = path(&DiagonalFit::fit, &SecondOrderFit::model);
   write_cv_dimension(group, along, "CV at a soft limit", study, fits);
-  write_each(group, along, {"time_constant", "time constant of the fit to T0", time, "NaN: no fit"}, fits,
-             [](const DiagonalFit& f) { return f.fit.model.time_constant; });
-  write_each(group, along, {"damping", "damping of the fit to T0", "1", "NaN: no fit"}, fits,
-             [](const DiagonalFit& f) { return f.fit.model.damping; });
-  write_each(group, along, {"fit_error", "root mean squared error of the fit to T0", "1", "NaN: no fit"},
-             fits, [](const DiagonalFit& f) { return f.fit.rms_error; });
+  store_rows<DiagonalFit>(
+      group, {along},
+      {fit_row<DiagonalFit>("time_constant", "time constant of the fit to T0",
+                            unit_text(study.plant.time_unit), model, &SecondOrderModel::time_constant),
+       fit_row<DiagonalFit>("damping", "damping of the fit to T0", "1", model, &SecondOrderModel::damping),
+       fit_row<DiagonalFit>("fit_error", "root mean squared error of the fit to T0", "1", &DiagonalFit::fit,
+                            &SecondOrderFit::rms_error)},
+      fits);
 }
 
 void write_structure(Hdf5Group& group, const Study& study, const BasisCase& basis) {
-  const std::vector<StructureFit> fits = structure_fits(study, basis);
-  const std::string time = unit_text(study.plant.time_unit);
-  const std::string along = "fixed_active_cv";
+  using F = StructureFit;
+  const std::vector<F> fits = structure_fits(study, basis);
+  const char* const along = "fixed_active_cv";
+  const auto model = path(&F::fixed, &SecondOrderFit::model);
   write_cv_dimension(group, along, "CV at a soft limit with and without the fixed MVs", study, fits);
-  write_each(group, along,
-             {"fixed_time_constant", "time constant of the fit with fixed MVs", time, "NaN: no fit"}, fits,
-             [](const StructureFit& f) { return f.fixed.model.time_constant; });
-  write_each(group, along, {"fixed_damping", "damping of the fit with fixed MVs", "1", "NaN: no fit"}, fits,
-             [](const StructureFit& f) { return f.fixed.model.damping; });
-  write_each(
-      group, along,
-      {"time_constant_multiplier", "time constant with fixed MVs over that without", "1", "NaN: no fit"},
-      fits, [](const StructureFit& f) { return f.time_constant_multiplier; });
-  write_each(group, along,
-             {"damping_multiplier", "damping with fixed MVs over that without", "1", "NaN: no fit"}, fits,
-             [](const StructureFit& f) { return f.damping_multiplier; });
+  store_rows<F>(group, {along},
+                {fit_row<F>("fixed_time_constant", "time constant of the fit with fixed MVs",
+                            unit_text(study.plant.time_unit), model, &SecondOrderModel::time_constant),
+                 fit_row<F>("fixed_damping", "damping of the fit with fixed MVs", "1", model,
+                            &SecondOrderModel::damping),
+                 fit_row<F>("time_constant_multiplier", "time constant with fixed MVs over that without", "1",
+                            &F::time_constant_multiplier),
+                 fit_row<F>("damping_multiplier", "damping with fixed MVs over that without", "1",
+                            &F::damping_multiplier)},
+                fits);
 }
 
-void write_spreads(Hdf5Group& group, const std::string& name, const std::string& parameter,
-                   const std::vector<S0Curve>& curves, std::vector<RatioSpread> S0Curve::*member) {
-  const auto number = [&](const char* suffix, const char* word, double RatioSpread::*value) {
-    std::vector<double> values;
-    for (const S0Curve& curve : curves)
-      for (const RatioSpread& spread : curve.*member)
-        values.push_back(spread.*value);
-    const VariableText text{
-        "ratio_" + name + suffix,
-        fmt::format("{} of Ivar_diag modified over true, {} of S0 multiplied", word, parameter), "1",
-        "NaN: no experiment has such a ratio"};
-    group.write(text.name, {"perturbed_cv", "multiplier"}, values, attributes<double>(text));
+void append_spreads(const Study& study, const std::string& name, const std::string& parameter,
+                    std::vector<RatioSpread> S0Curve::*member, std::vector<Row<S0Curve>>& rows) {
+  const auto add = [&](const char* suffix, const char* word, double RatioSpread::*value) {
+    rows.push_back(of_each<S0Curve>(
+        member_row<double>(
+            {"ratio_" + name + suffix,
+             fmt::format("{} of Ivar_diag modified over true, {} of S0 multiplied", word, parameter), "1",
+             "NaN: no experiment has such a ratio"},
+            value),
+        "multiplier", study.s0_perturbation.multipliers.size(), member));
   };
-  number("_min", "smallest", &RatioSpread::least);
-  number("_lower_quartile", "lower quartile", &RatioSpread::lower_quartile);
-  number("_median", "median", &RatioSpread::median);
-  number("_upper_quartile", "upper quartile", &RatioSpread::upper_quartile);
-  number("_max", "largest", &RatioSpread::largest);
+  add("_min", "smallest", &RatioSpread::least);
+  add("_lower_quartile", "lower quartile", &RatioSpread::lower_quartile);
+  add("_median", "median", &RatioSpread::median);
+  add("_upper_quartile", "upper quartile", &RatioSpread::upper_quartile);
+  add("_max", "largest", &RatioSpread::largest);
 }
 
 void write_curves(Hdf5Group& group, const Study& study, const RecordRange& records) {
   const std::vector<S0Curve> curves = s0_curve_collector(study).of(records);
   write_cv_dimension(group, "perturbed_cv", "affected CV", study, curves);
-  std::vector<std::int64_t> counts;
-  for (const S0Curve& curve : curves)
-    counts.push_back(curve.experiments);
-  group.write("experiments", {"perturbed_cv"}, counts,
-              attributes<std::int64_t>({"experiments", "number of experiments behind the ratios"}));
-  write_spreads(group, "time_constant", "time constant", curves, &S0Curve::time_constant);
-  write_spreads(group, "damping", "damping", curves, &S0Curve::damping);
+  std::vector<Row<S0Curve>> rows{member_row<std::int64_t>(
+      {"experiments", "number of experiments behind the ratios"}, &S0Curve::experiments)};
+  append_spreads(study, "time_constant", "time constant", &S0Curve::time_constant, rows);
+  append_spreads(study, "damping", "damping", &S0Curve::damping, rows);
+  store_rows(group, {"perturbed_cv"}, rows, curves);
 }
 
 }  // namespace

@@ -1,11 +1,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <string>
+#include <vector>
 
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "results/archive/archive_groups.hpp"
-#include "results/archive/columns.hpp"
 #include "results/archive/dimensions.hpp"
+#include "results/archive/row_io.hpp"
 
 namespace mpm {
 namespace {
@@ -19,38 +21,30 @@ std::vector<std::int64_t> indices_of(const std::vector<ExperimentRecord>& record
   return indices;
 }
 
-void write_names(Hdf5Group& group, const Study& study, const std::vector<ExperimentRecord>& records) {
-  std::vector<std::string> names, descriptions;
-  for (const ExperimentRecord& record : records) {
-    const Scenario& scenario = study.scenarios[static_cast<std::size_t>(record.draw.index)];
-    names.push_back(scenario.name);
-    descriptions.push_back(scenario.description);
-  }
-  group.write("name", {"experiment"}, names, attributes<std::string>({"name", "name of the scenario"}));
-  group.write("description", {"experiment"}, descriptions,
-              attributes<std::string>({"description", "what the study says of the scenario"}));
-}
-
-void write_affected(Hdf5Group& group, const Study& study, const std::vector<ExperimentRecord>& records) {
-  const auto ny = static_cast<std::size_t>(study.cv_count());
-  std::vector<std::int8_t> values(records.size() * ny, static_cast<std::int8_t>(FaultSource::none));
-  for (std::size_t i = 0; i < records.size(); ++i)
-    for (const AffectedCv& affected : records[i].draw.affected())
-      values[i * ny + static_cast<std::size_t>(affected.cv)] = static_cast<std::int8_t>(affected.by);
-  const VariableText text{
-      "affected", "what affects the CV, as the study says it", "1",
-      "mpm: model-plant mismatch; ud: unmeasured disturbance; mpm_ud: both",
-      enum_flags(std::array{FaultSource::none, FaultSource::mpm, FaultSource::ud, FaultSource::mpm_ud})};
-  group.write(text.name, {"experiment", "cv"}, values, attributes<std::int8_t>(text));
-}
-
-void write_totals(Hdf5Group& group, const std::vector<ExperimentRecord>& records) {
-  std::vector<double> values;
-  for (const ExperimentRecord& record : records)
-    values.push_back(total_simulation_error(record.chain()));
-  group.write("tsse", {"experiment"}, values,
-              attributes<double>({"tsse", "TSSE = sum of SSE over the CVs", "1",
-                                  "units of the CVs added up; NaN without a verdict of the chain"}));
+std::vector<RecordRow> scenario_truth_rows(const Study& study) {
+  using Record = ExperimentRecord;
+  const auto said = [&study](const Record& record) -> const Scenario& {
+    return study.scenarios[static_cast<std::size_t>(record.draw.index)];
+  };
+  static_assert(static_cast<int>(FaultSource::none) == 0);  // what stays of a CV that nothing affects
+  const RowAccess<Record, std::int8_t> affected{[](const Record& record, std::int8_t* sources) {
+    for (const AffectedCv& each : record.draw.affected())
+      sources[each.cv] = static_cast<std::int8_t>(each.by);
+  }};
+  return {
+      value_row<std::string, Record>({"name", "name of the scenario"},
+                                     [said](const Record& record) { return said(record).name; }),
+      value_row<std::string, Record>({"description", "what the study says of the scenario"},
+                                     [said](const Record& record) { return said(record).description; }),
+      {{"affected", "what affects the CV, as the study says it", "1",
+        "mpm: model-plant mismatch; ud: unmeasured disturbance; mpm_ud: both",
+        enum_words(std::array{FaultSource::none, FaultSource::mpm, FaultSource::ud, FaultSource::mpm_ud})},
+       {"cv"},
+       {study.plant.cvs.size()},
+       affected},
+      value_row<double, Record>({"tsse", "TSSE = sum of SSE over the CVs", "1",
+                                 "units of the CVs added up; NaN without a verdict of the chain"},
+                                [](const Record& record) { return total_simulation_error(record.chain()); })};
 }
 
 }  // namespace
@@ -65,9 +59,7 @@ void write_scenarios(Hdf5Group& root, const Campaign& campaign) {
   group.write_dimension("experiment", indices_of(records),
                         attributes<std::int64_t>({"experiment", "index of the experiment in the study"}));
   write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);
-  write_names(group, study, records);
-  write_affected(group, study, records);
-  write_totals(group, records);
+  store_rows(group, {"experiment"}, scenario_truth_rows(study), records);
 }
 
 }  // namespace mpm

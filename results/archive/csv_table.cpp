@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/row_major.hpp"
 #include "results/archive/record_tables.hpp"
+#include "results/archive/variable_text.hpp"
 #include "results/files/csv_text.hpp"
 #include "scenarios/loop/historian.hpp"
 
@@ -24,16 +26,14 @@ std::string number(double value) {
 }
 
 template <class T>
-std::string cell(const VariableText& text, const T& value) {
+std::string cell(const NumberText& text, const T& value) {
   if constexpr (std::is_same_v<T, std::string>)
     return csv_field(value);
   else if constexpr (std::is_same_v<T, double>)
     return number(value);
   else {
-    const auto& [values, meanings] = text.flags;
-    const auto place = std::find(values.begin(), values.end(), static_cast<int>(value));
-    return place == values.end() ? fmt::format("{}", value)
-                                 : csv_field(meanings[static_cast<std::size_t>(place - values.begin())]);
+    const std::string* const word = word_for(text.words, value);
+    return word == nullptr ? fmt::format("{}", value) : csv_field(flag_word(*word));
   }
 }
 
@@ -60,31 +60,26 @@ std::vector<std::string> coordinates(const Campaign& campaign, const std::string
   return names;
 }
 
-/// The headings of the columns of a variable, in the order of its values.
-std::vector<std::string> headings(const Campaign& campaign, const RecordVariable& variable,
-                                  std::size_t dimensions) {
-  std::vector<std::string> list{variable.text.name};
+/// The headings of the columns of a row of records, in the order of its values.
+std::vector<std::string> headings(const Campaign& campaign, const RecordRow& row, std::size_t dimensions) {
+  std::vector<std::string> list{row.text.name};
   for (std::size_t d = 0; d < dimensions; ++d) {
     std::vector<std::string> longer;
     for (const std::string& heading : list)
-      for (const std::string& name : coordinates(campaign, variable.dimensions[d], variable.shape[d]))
+      for (const std::string& name : coordinates(campaign, row.dimensions[d], row.shape[d]))
         longer.push_back(fmt::format("{}.{}", heading, name));
     list = std::move(longer);
   }
   return list;
 }
 
-/// The cells of a variable of one record.
-std::vector<std::string> cells(const RecordVariable& variable, const ExperimentRecord& record) {
+/// The cells of a row of one record.
+std::vector<std::string> cells(const RecordRow& row, const ExperimentRecord& record) {
   std::vector<std::string> list;
-  std::visit(
-      [&]<class T>(const RecordAccess<T>& access) {
-        std::vector<T> values(variable.size());
-        access.get(record, values.data());
-        for (const T& value : values)
-          list.push_back(cell(variable.text, value));
-      },
-      variable.access);
+  take_values(row, record, [&](const auto& values) {
+    for (const auto& value : values)
+      list.push_back(cell(row.text, value));
+  });
   return list;
 }
 
@@ -97,27 +92,6 @@ void append(std::vector<std::string>&& more, std::vector<std::string>& list) {
 }
 
 using Write = std::function<void(std::string_view)>;
-
-/// One row an experiment with the variables of the tables of this group.
-void write_records(const Campaign& campaign, const std::string& group, const Write& write) {
-  std::vector<RecordVariable> variables;
-  for (RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
-    if (table.group == group)
-      for (RecordVariable& variable : table.variables)
-        if (variable.use != RecordUse::bytes_only)
-          variables.push_back(std::move(variable));
-  std::vector<std::string> head{"experiment"};
-  for (const RecordVariable& variable : variables)
-    for (const std::string& heading : headings(campaign, variable, variable.dimensions.size()))
-      head.push_back(csv_field(heading));
-  write(line(head));
-  records_of(campaign).each([&](const ExperimentRecord& record) {
-    std::vector<std::string> row{fmt::format("{}", record.draw.index)};
-    for (const RecordVariable& variable : variables)
-      append(cells(variable, record), row);
-    write(line(row));
-  });
-}
 
 void write_findings(const Campaign& campaign, const Write& write) {
   write("name,meaning,form,value,lower,upper,count,hits,reported\n");
@@ -148,14 +122,14 @@ bool all_have_truth(const Campaign& campaign) {
 /// that is something else.
 void write_loops(const Campaign& campaign, const Write& write) {
   const bool truth = all_have_truth(campaign);
-  std::vector<RecordVariable> signals;
+  std::vector<RecordRow> signals;
   for (RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
     if (table.group == "trajectories" || (table.group == "truth" && truth))
-      for (RecordVariable& variable : table.variables)
-        if (!variable.dimensions.empty() && variable.dimensions.back() == "sample")
-          signals.push_back(std::move(variable));
+      for (RecordRow& row : table.rows)
+        if (!row.dimensions.empty() && row.dimensions.back() == "sample")
+          signals.push_back(std::move(row));
   std::vector<std::string> head{"experiment", "sample", "time"};
-  for (const RecordVariable& signal : signals)
+  for (const RecordRow& signal : signals)
     for (const std::string& heading : headings(campaign, signal, 1))
       head.push_back(csv_field(heading));
   if (campaign.study.record.alters())
@@ -167,7 +141,7 @@ void write_loops(const Campaign& campaign, const Write& write) {
     if (!record.loop)
       return;
     std::vector<std::vector<std::string>> columns;  // of each signal, row by row
-    for (const RecordVariable& signal : signals)
+    for (const RecordRow& signal : signals)
       columns.push_back(cells(signal, record));
     if (campaign.study.record.alters())
       columns.push_back(recorded_cells(campaign.study, record));
@@ -185,6 +159,26 @@ void write_loops(const Campaign& campaign, const Write& write) {
 
 }  // namespace
 
+void write_csv_records(const Campaign& campaign, const std::vector<RecordTable>& tables,
+                       const std::string& group, const Write& write) {
+  std::vector<RecordRow> rows;
+  for (const RecordTable& table : tables)
+    if (table.group == group)
+      std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(rows),
+                   [](const RecordRow& row) { return row.use != RowUse::bytes_only; });
+  std::vector<std::string> head{"experiment"};
+  for (const RecordRow& row : rows)
+    for (const std::string& heading : headings(campaign, row, row.dimensions.size()))
+      head.push_back(csv_field(heading));
+  write(line(head));
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    std::vector<std::string> fields{fmt::format("{}", record.draw.index)};
+    for (const RecordRow& row : rows)
+      append(cells(row, record), fields);
+    write(line(fields));
+  });
+}
+
 std::vector<std::string> csv_table_names(const Campaign& campaign) {
   std::vector<std::string> names{kExperiments, kFindings, kLoops};
   append(method_names(campaign), names);
@@ -192,8 +186,11 @@ std::vector<std::string> csv_table_names(const Campaign& campaign) {
 }
 
 void write_csv_table(const Campaign& campaign, const std::string& name, const Write& write) {
+  const auto records = [&](const std::string& group) {
+    write_csv_records(campaign, record_tables(campaign.study, forms_of(campaign)), group, write);
+  };
   if (name == kExperiments)
-    return write_records(campaign, "", write);
+    return records("");
   if (name == kFindings)
     return write_findings(campaign, write);
   if (name == kLoops)
@@ -202,7 +199,7 @@ void write_csv_table(const Campaign& campaign, const std::string& name, const Wr
   if (std::find(methods.begin(), methods.end(), name) == methods.end())
     throw InputError("--table", fmt::format("'{}'", name),
                      fmt::format("{}", fmt::join(csv_table_names(campaign), ", ")));
-  write_records(campaign, "methods/" + name, write);
+  records("methods/" + name);
 }
 
 std::string csv_table(const Campaign& campaign, const std::string& name) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "results/archive/campaign.hpp"
+#include "results/archive/record_tables.hpp"
 
 namespace mpm {
 
@@ -22,5 +23,9 @@ std::string csv_table(const Campaign& campaign, const std::string& name);
 /// memory.
 void write_csv_table(const Campaign& campaign, const std::string& name,
                      const std::function<void(std::string_view)>& write);
+
+/// One row an experiment with the rows of those of these tables that belong to `group`.
+void write_csv_records(const Campaign& campaign, const std::vector<RecordTable>& tables,
+                       const std::string& group, const std::function<void(std::string_view)>& write);
 
 }  // namespace mpm

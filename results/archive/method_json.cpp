@@ -46,14 +46,17 @@ std::string whole_text(const JsonEntry& entry) {
 }
 
 AssessmentNumberInfo number_of(const JsonEntry& entry) {
-  return {.name = whole_text(entry.at("name")),
-          .scope = scope_of(entry.at("scope")),
-          .meaning = whole_text(entry.at("meaning")),
-          .unit = whole_text(entry.at("unit")),
-          .words = entry.at("words").texts(),
-          .summarised = entry.at("summarised").flag(),
-          .label = whole_text(entry.at("label")),
-          .estimates_ivar_basis = entry.at("estimates_ivar_basis").flag()};
+  const bool estimates = entry.at("estimates_ivar_basis").flag();
+  const bool summarised = entry.at("summarised").flag();
+  return {{.name = whole_text(entry.at("name")),
+           .meaning = whole_text(entry.at("meaning")),
+           .unit = whole_text(entry.at("unit")),
+           .words = numbered(entry.at("words").texts()),
+           .heading = whole_text(entry.at("label"))},
+          scope_of(entry.at("scope")),
+          estimates    ? NumberFinding::regression
+          : summarised ? NumberFinding::summary
+                       : NumberFinding::none};
 }
 
 /// What archives of earlier programs do not say.
@@ -128,15 +131,19 @@ std::string method_description_json(const MethodDescription& method) {
   if (!method.given_options.empty())
     json["given_options"] = method.given_options;
   json["numbers"] = Json::array();
-  for (const AssessmentNumberInfo& number : method.numbers)
+  for (const AssessmentNumberInfo& number : method.numbers) {
+    Json words = Json::array();
+    for (const NumberWord& each : number.words)
+      words.push_back(each.word);
     json["numbers"].push_back({{"name", number.name},
                                {"scope", name_of(number.scope)},
                                {"meaning", number.meaning},
                                {"unit", number.unit},
-                               {"words", number.words},
-                               {"summarised", number.summarised},
-                               {"label", number.label},
-                               {"estimates_ivar_basis", number.estimates_ivar_basis}});
+                               {"words", std::move(words)},
+                               {"summarised", number.finding == NumberFinding::summary},
+                               {"label", number.heading},
+                               {"estimates_ivar_basis", number.finding == NumberFinding::regression}});
+  }
   return json.dump();
 }
 

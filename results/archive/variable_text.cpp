@@ -6,26 +6,21 @@
 
 namespace mpm {
 
-bool Flags::contains(std::int64_t value) const {
-  return std::find(values.begin(), values.end(), value) != values.end();
-}
-
 std::string flag_word(std::string text) {
   std::replace(text.begin(), text.end(), ' ', '_');
   return text;
 }
 
-Flags yes_no_flags() {
-  return {{0, 1}, {"no", "yes"}};
+std::vector<NumberWord> with_none(std::vector<NumberWord> words, const char* none) {
+  words.insert(words.begin(), {-1, none});
+  return words;
 }
 
-Flags index_flags(const std::vector<PlantModel::Variable>& variables) {
-  Flags flags{{-1}, {"none"}};
-  for (const PlantModel::Variable& variable : variables) {
-    flags.values.push_back(static_cast<int>(flags.values.size()) - 1);
-    flags.meanings.push_back(flag_word(variable.name));
-  }
-  return flags;
+std::vector<NumberWord> index_words(const std::vector<PlantModel::Variable>& variables) {
+  std::vector<std::string> names;
+  for (const PlantModel::Variable& variable : variables)
+    names.push_back(variable.name);
+  return with_none(numbered(names));
 }
 
 std::string unit_text(const std::string& unit) {

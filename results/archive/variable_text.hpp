@@ -5,66 +5,56 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/number_text.hpp"
 #include "plants/linear/plant_model.hpp"
 #include "results/archive/hdf5_file.hpp"
 
 namespace mpm {
 
-/// The values that a flag variable can have, and a word for each.
-struct Flags {
-  std::vector<int> values;
-  std::vector<std::string> meanings;
+// What a file says of a number to people and programs.
 
-  bool contains(std::int64_t value) const;
-};
+/// A word as files have it: with '_' for blanks, which separate the words of an attribute.
+std::string flag_word(std::string text);
 
-/// What a file says of a variable to people and programs.
-struct VariableText {
-  std::string name;
-  std::string long_name;
-  std::string units = "1";
-  std::string comment = {};      ///< how to read special values; none when empty
-  Flags flags = {};              ///< for flag variables
-  std::string coordinates = {};  ///< a variable with further coordinates, such as `time`; none when empty
-};
-
-/// `long_name`, `units` and, where there are any, `comment`, `coordinates`, `flag_values` (of the type T of
-/// the variable, as the CF conventions want it) and `flag_meanings`.
+/// `long_name`, `units` and, where there are any, `comment`, `coordinates` (a variable with further ones,
+/// such as `time`), `flag_values` (of the type T of the variable, as the CF conventions want it) and
+/// `flag_meanings`.
 template <class T>
-Attributes attributes(const VariableText& text) {
-  Attributes list{{"long_name", text.long_name}, {"units", text.units}};
-  if (!text.comment.empty())
-    list.emplace_back("comment", text.comment);
-  if (!text.coordinates.empty())
-    list.emplace_back("coordinates", text.coordinates);
+Attributes attributes(const NumberText& text, const std::string& coordinates = {}) {
+  Attributes list{{"long_name", text.meaning}, {"units", text.unit}};
+  if (!text.special.empty())
+    list.emplace_back("comment", text.special);
+  if (!coordinates.empty())
+    list.emplace_back("coordinates", coordinates);
   if constexpr (std::is_same_v<T, std::int8_t> || std::is_same_v<T, std::int32_t>) {
-    if (!text.flags.values.empty()) {
-      list.emplace_back("flag_values", std::vector<T>(text.flags.values.begin(), text.flags.values.end()));
+    if (!text.words.empty()) {
+      std::vector<T> values;
       std::string meanings;
-      for (const std::string& meaning : text.flags.meanings)
-        meanings += (meanings.empty() ? "" : " ") + meaning;
+      for (const auto& [value, word] : text.words) {
+        values.push_back(static_cast<T>(value));
+        meanings += (meanings.empty() ? "" : " ") + flag_word(word);
+      }
+      list.emplace_back("flag_values", values);
       list.emplace_back("flag_meanings", meanings);
     }
   }
   return list;
 }
 
-/// The first of the values of a flag variable that has no meaning; null when there is none.
+/// The first of these values that is to have a word and has none; null when there is none.
 template <class T>
-const T* value_without_meaning(const VariableText& text, const std::vector<T>& values) {
+const T* value_without_word(const NumberText& text, const std::vector<T>& values) {
   if constexpr (std::is_integral_v<T>)
     for (const T& value : values)
-      if (!text.flags.values.empty() && !text.flags.contains(value))
+      if (!text.words.empty() && word_for(text.words, value) == nullptr)
         return &value;
   return nullptr;
 }
 
-/// A word of `Flags::meanings`: with '_' for blanks, which separate them in a file.
-std::string flag_word(std::string text);
-/// 0: no, 1: yes.
-Flags yes_no_flags();
-/// -1: none, then the position of each variable under its name, with '_' for blanks.
-Flags index_flags(const std::vector<PlantModel::Variable>& variables);
+/// The words behind -1 for "none".
+std::vector<NumberWord> with_none(std::vector<NumberWord> words, const char* none = "none");
+/// -1: none, then the position of each variable under its name.
+std::vector<NumberWord> index_words(const std::vector<PlantModel::Variable>& variables);
 
 /// `unit` as an attribute: "1" for an empty one. Units of time get their symbols ("min" for "minutes"),
 /// because xarray turns a variable in "minutes" into time spans and loses its digits.

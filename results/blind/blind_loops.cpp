@@ -16,7 +16,7 @@
 #include "base/row_major.hpp"
 #include "base/sha256.hpp"
 #include "results/archive/dimensions.hpp"
-#include "results/archive/matrix_io.hpp"
+#include "results/archive/row_io.hpp"
 #include "results/files/atomic_file.hpp"
 #include "results/files/csv_text.hpp"
 #include "results/files/file_seal.hpp"
@@ -111,8 +111,11 @@ std::string empty_verdicts(std::size_t loops, std::optional<int> windows, const 
   return text;
 }
 
-VariableText text_of(const Study& study, const LoopSignal& signal) {
-  return {signal.name, signal.meaning, unit_of_rows(study.plant, signal), "", {}, "time"};
+Row<AssessedLoop> row_of(const Study& study, const LoopSignal& signal) {
+  return matrix_row<AssessedLoop>({signal.name, signal.meaning, unit_of_rows(study.plant, signal)},
+                                  {signal.rows, "sample"}, std::ssize(row_names(study, signal)),
+                                  study.simulation.samples, signal.member)
+      .along("time");
 }
 
 /// All signals side by side, so that each loop is read once.
@@ -121,7 +124,7 @@ void write_loops(Hdf5Group& group, const Study& study, const BlindLoops& loops) 
   for (const LoopSignal& signal : loop_signals())
     if (!row_names(study, signal).empty() || !is_candidates(signal))
       all.emplace_back(&signal, group.create_rows<double>(signal.name, {"loop", signal.rows, "sample"},
-                                                          attributes<double>(text_of(study, signal))));
+                                                          attributes<double>(row_of(study, signal))));
   const BlindLoops::Next next = loops.begin();
   for (std::size_t i = 0; i < loops.count; ++i) {
     const AssessedLoop loop = next_loop(next, study);
@@ -137,8 +140,7 @@ void write_loops(Hdf5Group& group, const Study& study, const BlindLoops& loops) 
 void write_benchmark(Hdf5Group& group, const Study& study, const AssessedLoop& benchmark) {
   for (const LoopSignal& signal : loop_signals())
     if (const Eigen::MatrixXd& values = benchmark.*signal.member; !is_candidates(signal) || values.rows() > 0)
-      write_matrices(group, {signal.rows, "sample"}, text_of(study, signal), {&values},
-                     static_cast<Eigen::Index>(row_names(study, signal).size()), study.simulation.samples);
+      store_rows<AssessedLoop>(group, {row_of(study, signal)}, benchmark);
 }
 
 void write_dimensions(Hdf5Group& group, const Study& study) {

@@ -1,11 +1,15 @@
+#include <iterator>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/scenario_sections.hpp"
 #include "results/summary/summary_sections.hpp"
+#include "results/text/experiment_text.hpp"
 #include "results/text/scenario_text.hpp"
 
 namespace mpm {
@@ -16,33 +20,34 @@ const Pen kY0{colour::kBlue, Dash::dashed, Mark::none, 1.8};
 const Pen kY0Diag{colour::kVermillion, Dash::dotted, Mark::none, 2.0};
 const Pen kWhiteBand{colour::kLightGrey, Dash::solid, Mark::none, 1.0};
 
-constexpr std::size_t kFewCvs = 3;  // of so many CVs all are drawn
+constexpr Eigen::Index kFewCvs = 3;  // of so many CVs all are drawn
 
 /// What the chain says of one loop, under its name.
 struct Loop {
   std::string id;
   std::string name;
-  Diagnosis chain;
-  std::vector<std::size_t> drawn;  ///< which CVs are drawn
+  std::map<Eigen::Index, AcfComparison> drawn = {};  ///< the CVs that are drawn
 };
 
 std::vector<Loop> loops_of(const Campaign& campaign) {
   std::vector<Loop> loops;
-  if (!campaign.basis.diagnosis.cvs.empty())
-    loops.push_back({"basis", "basis case", campaign.basis.diagnosis, {}});
-  const std::size_t basis = loops.size();
-  for (const ExperimentRecord& record : campaign.records)
-    loops.push_back(
-        {fmt::format("{}", record.draw.index), scenario_name(campaign.study, record), record.chain(), {}});
-  for (std::size_t i = 0; i < loops.size(); ++i)
-    for (std::size_t cv = 0; cv < loops[i].chain.cvs.size(); ++cv)
-      if (i < basis || loops[i].chain.cvs[cv].flagged || loops[i].chain.cvs.size() <= kFewCvs)
-        loops[i].drawn.push_back(cv);
+  Loop& basis = loops.emplace_back(Loop{"basis", "basis case"});
+  for (const CvDiagnosis& of_cv : campaign.basis.diagnosis.cvs)
+    basis.drawn.emplace(std::ssize(basis.drawn), of_cv.acf);
+  const Eigen::Index cvs = campaign.study.cv_count();
+  for (const ExperimentRecord& record : campaign.records) {
+    const AssessmentRecord& chain = record.chain();
+    Loop& loop =
+        loops.emplace_back(Loop{fmt::format("{}", record.draw.index), scenario_name(campaign.study, record)});
+    for (Eigen::Index cv = 0; chain.answered() && cv < cvs; ++cv)
+      if (chain.flags(cv) || cvs <= kFewCvs)
+        loop.drawn.emplace(cv, cv_diagnosis(chain, cv).acf);
+  }
   return loops;
 }
 
-Panel acf_panel(const Study& study, std::size_t cv, const AcfComparison& acf) {
-  const std::string& name = study.plant.cvs[cv].name;
+Panel acf_panel(const Study& study, Eigen::Index cv, const AcfComparison& acf) {
+  const std::string name = cv_name(study, cv);
   std::vector<double> lags;
   for (Eigen::Index lag = 0; lag < acf.y.values.size(); ++lag)
     lags.push_back(static_cast<double>(lag));
@@ -65,8 +70,8 @@ Figure acf_figure(const Study& study, const Loop& loop) {
       "noise; section 3.2 of the thesis, figure A2.1.",
       as_label(loop.name));
   figure.legend = {{"y", kY}, {"y_{0}", kY0}, {"y_{0 diag}", kY0Diag}, {"white noise", kWhiteBand}};
-  for (const std::size_t cv : loop.drawn)
-    figure.panels.push_back(acf_panel(study, cv, loop.chain.cvs[cv].acf));
+  for (const auto& [cv, acf] : loop.drawn)
+    figure.panels.push_back(acf_panel(study, cv, acf));
   return figure;
 }
 

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include "analysis/indicators/scatter_ellipse.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/report/scenario_sections.hpp"
+#include "results/text/experiment_text.hpp"
 #include "results/text/scenario_text.hpp"
 
 namespace mpm {
@@ -61,10 +63,10 @@ Panel ellipse_panel(const std::string& name, const std::string& cv, const PerSta
 template <class Visit>
 void for_each_flagged(const Campaign& campaign, Visit visit) {
   for (const ExperimentRecord& record : campaign.records) {
-    const Diagnosis chain = record.chain();
-    for (std::size_t cv = 0; cv < chain.cvs.size(); ++cv)
-      if (chain.cvs[cv].flagged)
-        visit(scenario_name(campaign.study, record) + " " + campaign.study.plant.cvs[cv].name, chain.cvs[cv]);
+    for (Eigen::Index cv = 0; cv < campaign.study.cv_count(); ++cv)
+      if (record.chain().flags(cv))
+        visit(scenario_name(campaign.study, record) + " " + cv_name(campaign.study, cv),
+              cv_diagnosis(record.chain(), cv));
   }
 }
 

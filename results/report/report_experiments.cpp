@@ -78,15 +78,16 @@ Section experiments_section(const ReportInput& input) {
   records_of(campaign).each([&](const ExperimentRecord& record) {
     if (record.draw.index >= input.listed_below)
       return;
-    const Diagnosis chain = record.chain();
-    table.row(
-        {input.number_words(record.draw.index), kind_name(record.draw.kind),
-         as_label(fault_text(study, record.draw)), as_label(cv_name(study, record.draw.true_cv())),
-         chain.impactful ? as_label(cv_name(study, chain.predicted_cv)) : "-",
-         chain.impactful ? source_name(chain.predicted_source) : "-", outcome_cell(study, record),
-         fixed(chain.impactful ? chain.indicator.i_mpm : kNaN), fixed(index_of(study, record, chain.ivar)),
-         fixed(index_of(study, record, chain.ivar_diag)), fixed(index_of(study, record, record.ivar_basis))},
-        experiment_anchor(input, record));
+    const AssessmentRecord& chain = record.chain();
+    table.row({input.number_words(record.draw.index), kind_name(record.draw.kind),
+               as_label(fault_text(study, record.draw)), as_label(cv_name(study, record.draw.true_cv())),
+               chain.flagged ? as_label(cv_name(study, chain.predicted_cv)) : "-",
+               chain.flagged ? source_name(chain.predicted_source) : "-", outcome_cell(study, record),
+               fixed(chain.flagged ? chain.number("i_mpm") : kNaN),
+               fixed(index_of(study, record, chain.values("ivar").reshaped())),
+               fixed(index_of(study, record, chain.values("ivar_diag").reshaped())),
+               fixed(index_of(study, record, record.ivar_basis))},
+              experiment_anchor(input, record));
   });
   if (experiments > kMostExperiments)
     section.say(fmt::format("The first {} of {}; {} writes all.", kMostExperiments, experiments,

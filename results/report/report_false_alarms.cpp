@@ -34,8 +34,8 @@ Panel group_panel(const ReportInput& input, const FalseAlarms& group) {
   double least = study.diagnosis.impact_lower, largest = study.diagnosis.impact_upper;
   std::vector<NamedPoint> quiet, alarms, costs;
   records_of(input.campaign).each([&](const ExperimentRecord& record) {
-    const Diagnosis chain = record.chain();
-    if (chain.ivar.size() == 0 || !group.has(record.draw))
+    const AssessmentRecord& chain = record.chain();
+    if (!chain.answered() || !group.has(record.draw))
       return;
     const double x = group.parameter ? record.draw.tuning->factor : static_cast<double>(record.draw.index);
     const auto farthest = [&](const char* index, const Eigen::VectorXd& values) -> NamedPoint {
@@ -51,7 +51,7 @@ Panel group_panel(const ReportInput& input, const FalseAlarms& group) {
               experiment_anchor(input, record)};
     };
     costs.push_back(farthest("Ivar_basis", record.ivar_basis));
-    (chain.impactful ? alarms : quiet).push_back(farthest("Ivar", chain.ivar));
+    (chain.flagged ? alarms : quiet).push_back(farthest("Ivar", chain.values("ivar").reshaped()));
   });
   const Rate& rate = group.false_alarm;
   PanelScript panel("alarm_" + group.name(),

@@ -121,7 +121,7 @@ void add_loop(Section& section, const ReportInput& input, const LoopView& view, 
 std::string loops_answer(const ReportInput& input, const ExperimentRecord& faulty) {
   const Study& study = input.campaign.study;
   const Eigen::Index cv = faulty.draw.true_cv();
-  const Eigen::VectorXd ivar = faulty.chain().ivar;
+  const Eigen::MatrixXd ivar = faulty.chain().values("ivar");
   if (cv < 0 || cv >= ivar.size())
     return "";
   return fmt::format(

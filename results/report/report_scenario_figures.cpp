@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "results/plot/panel_script.hpp"
 #include "results/plot/pens.hpp"
 #include "results/plot/plot_text.hpp"
@@ -55,8 +58,7 @@ double depth_of_index(double index) {
 
 /// One field a CV and scenario, coloured outside of the band of impact. With `judged`, blue is an affected CV
 /// and orange another one, and an affected CV within the band stands in brackets.
-Panel index_panel(const Campaign& campaign, const char* name, const char* title,
-                  Eigen::VectorXd Diagnosis::*index, bool judged) {
+Panel index_panel(const Campaign& campaign, const char* name, const char* title, bool judged) {
   const Study& study = campaign.study;
   const std::vector<std::string> words = scenario_words(campaign);
   const auto last = static_cast<double>(words.size()) - 1.0;
@@ -66,8 +68,7 @@ Panel index_panel(const Campaign& campaign, const char* name, const char* title,
   PanelScript panel(name, title, cvs, rows_axis(words));
   for (std::size_t row = 0; row < campaign.records.size(); ++row) {
     const ExperimentRecord& record = campaign.records[row];
-    const Diagnosis chain = record.chain();
-    const Eigen::VectorXd& values = chain.*index;
+    const Eigen::MatrixXd values = record.chain().values(name);
     for (Eigen::Index cv = 0; cv < values.size(); ++cv) {
       const bool outside = study.diagnosis.has_impact(values(cv));
       const bool affected = judged && is_affected(record, cv);
@@ -94,8 +95,8 @@ Figure index_figure(const Campaign& campaign) {
   figure.legend = {{"Ivar outside the band", kOutside},
                    {"Ivar_{diag} outside the band, CV affected", kOutsideAffected},
                    {"Ivar_{diag} outside the band, CV not affected", kOutsideOnly}};
-  figure.panels = {index_panel(campaign, "ivar", "Ivar", &Diagnosis::ivar, false),
-                   index_panel(campaign, "ivar_diag", "Ivar_{diag}", &Diagnosis::ivar_diag, true)};
+  figure.panels = {index_panel(campaign, "ivar", "Ivar", false),
+                   index_panel(campaign, "ivar_diag", "Ivar_{diag}", true)};
   return figure;
 }
 
@@ -106,10 +107,9 @@ struct IndicatorRows {
 
   explicit IndicatorRows(const Campaign& campaign) {
     for (const ExperimentRecord& record : campaign.records) {
-      const Diagnosis chain = record.chain();
-      for (std::size_t cv = 0; cv < chain.cvs.size(); ++cv)
-        if (chain.cvs[cv].flagged || is_affected(record, static_cast<Eigen::Index>(cv)))
-          add(campaign.study, record, chain.cvs[cv], cv);
+      for (Eigen::Index cv = 0; record.chain().answered() && cv < campaign.study.cv_count(); ++cv)
+        if (record.chain().flags(cv) || is_affected(record, cv))
+          add(campaign.study, record, cv);
     }
     // The first row on top.
     for (std::vector<NamedPoint>* points : {&kurtosis, &skewness})
@@ -118,17 +118,19 @@ struct IndicatorRows {
   }
 
  private:
-  void add(const Study& study, const ExperimentRecord& record, const CvDiagnosis& found, std::size_t cv) {
+  void add(const Study& study, const ExperimentRecord& record, Eigen::Index cv) {
+    const AssessmentRecord& chain = record.chain();
     std::string truth = "not affected";
     for (const AffectedCv& affected : record.draw.affected())
-      if (affected.cv == static_cast<Eigen::Index>(cv))
-        truth = source_name(affected.by) + (found.flagged ? "" : ", missed");
+      if (affected.cv == cv)
+        truth = source_name(affected.by) + (chain.flags(cv) ? "" : ", missed");
     const std::string name =
-        fmt::format("{} {} ({})", scenario_name(study, record), study.plant.cvs[cv].name, truth);
+        fmt::format("{} {} ({})", scenario_name(study, record), cv_name(study, cv), truth);
     const auto row = static_cast<double>(words.size());
-    const MpmIndicator& indicator = found.distribution.mpm;
-    kurtosis.push_back({indicator.co_dkts, row, fmt::format("{}: co_dkts {:.3f}", name, indicator.co_dkts)});
-    skewness.push_back({indicator.co_dskn, row, fmt::format("{}: co_dskn {:.3f}", name, indicator.co_dskn)});
+    for (const auto& [points, number] : {std::pair{&kurtosis, "co_dkts"}, std::pair{&skewness, "co_dskn"}}) {
+      const double value = chain.number(std::string("cv_") + number, cv);
+      points->push_back({value, row, fmt::format("{}: {} {:.3f}", name, number, value)});
+    }
     words.push_back(as_label(name));
   }
 };

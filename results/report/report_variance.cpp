@@ -41,11 +41,11 @@ struct Pairs {
 
   void add(const ReportInput& input, const ExperimentRecord& record) {
     const Study& study = input.campaign.study;
-    const Diagnosis chain = record.chain();
+    const Eigen::MatrixXd ivar = record.chain().values("ivar");
     const NonlinearCause cause = first_cause(record.conditions);
     const std::string because = cause == NonlinearCause::none ? "" : fmt::format("; {}", title_of(cause));
-    for (Eigen::Index cv = 0; cv < chain.ivar.size(); ++cv) {
-      const double x = chain.ivar(cv);
+    for (Eigen::Index cv = 0; cv < ivar.size(); ++cv) {
+      const double x = ivar(cv);
       const double y = record.ivar_basis(cv);
       if (!(x > 0.0 && y > 0.0 && std::isfinite(x) && std::isfinite(y)))
         continue;

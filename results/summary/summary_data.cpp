@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/sensitivity/loop_interaction.hpp"
 #include "results/files/utf8.hpp"
@@ -41,15 +42,15 @@ Json run_json(const CampaignInfo& info) {
           {"jobs", info.jobs}};
 }
 
-/// Every number of a table of columns; a verdict as its word.
-template <class Owner>
-Json numbers_json(const Owner& owner, const std::vector<NumberColumn<Owner>>& columns) {
+/// What `number` gives for every row; a verdict as its word.
+template <class Owner, class Number>
+Json numbers_json(const std::vector<Row<Owner>>& rows, const Number& number) {
   Json numbers = Json::object();
-  for (const NumberColumn<Owner>& column : columns)
-    if (column.words.empty())
-      numbers[column.name] = column.value(owner);
-    else
-      numbers[column.name] = column.words.at(static_cast<std::size_t>(column.value(owner)));
+  for (const Row<Owner>& row : rows) {
+    const double value = number(row);
+    const std::string* const word = word_for(row.text.words, value);
+    numbers[row.text.name] = word == nullptr ? Json(value) : Json(*word);
+  }
   return numbers;
 }
 
@@ -81,7 +82,9 @@ Json basis_json(const Study& study, const BasisCase& basis) {
   }
   Json acf = Json::object();
   for (std::size_t cv = 0; cv < basis.diagnosis.cvs.size(); ++cv)
-    acf[study.plant.cvs[cv].name] = numbers_json(basis.diagnosis.cvs[cv].acf, acf_columns());
+    acf[study.plant.cvs[cv].name] = numbers_json(acf_rows(), [&](const Row<AcfComparison>& row) {
+      return numbers_of(row, basis.diagnosis.cvs[cv].acf).front();
+    });
   return {{"healthy", basis.healthy},
           {"explanation", basis.explanation},
           {"ivar", ivar},
@@ -165,22 +168,21 @@ Json s0_perturbation_json(const Study& study, const SummaryContent& parts) {
   return {{"fits", fits}, {"changes", curves}, {"fixed_mvs", structures}};
 }
 
-Json cv_json(const Study& study, const Diagnosis& diagnosis, const Eigen::VectorXd& ivar_basis,
-             std::size_t cv) {
-  const CvDiagnosis& found = diagnosis.cvs[cv];
-  const auto place = static_cast<Eigen::Index>(cv);
-  return {{"cv", study.plant.cvs[cv].name},
-          {"ivar", diagnosis.ivar(place)},
-          {"ivar_diag", diagnosis.ivar_diag(place)},
-          {"ivar_basis", ivar_basis(place)},
-          {"flagged", found.flagged},
-          {"source", to_string(found.source)},
-          {"i_mpm", found.distribution.mpm.i_mpm},
-          {"co_dkts", found.distribution.mpm.co_dkts},
-          {"co_dskn", found.distribution.mpm.co_dskn},
-          {"sse", found.sse},
-          {"distribution", numbers_json(found.distribution, distribution_columns())},
-          {"acf", numbers_json(found.acf, acf_columns())}};
+Json cv_json(const Study& study, const ExperimentRecord& record, Eigen::Index cv) {
+  const AssessmentRecord& said = record.chain();
+  const auto of_cv = [&](const auto& row) { return said.number("cv_" + row.text.name, cv); };
+  return {{"cv", cv_name(study, cv)},
+          {"ivar", said.number("ivar", cv)},
+          {"ivar_diag", said.number("ivar_diag", cv)},
+          {"ivar_basis", record.ivar_basis(cv)},
+          {"flagged", said.flags(cv)},
+          {"source", to_string(said.source_on(cv))},
+          {"i_mpm", said.number("cv_i_mpm", cv)},
+          {"co_dkts", said.number("cv_co_dkts", cv)},
+          {"co_dskn", said.number("cv_co_dskn", cv)},
+          {"sse", said.number("cv_sse", cv)},
+          {"distribution", numbers_json(distribution_rows(), of_cv)},
+          {"acf", numbers_json(acf_rows(), of_cv)}};
 }
 
 /// Named scenarios; an empty list in a study of random experiments.
@@ -190,12 +192,12 @@ Json scenarios_json(const Campaign& campaign) {
   for (const ExperimentRecord& record : campaign.records) {
     if (!record.draw.named)
       continue;
-    const Diagnosis chain = record.chain();
+    const AssessmentRecord& chain = record.chain();
     Json affected = Json::object(), cvs = Json::array();
     for (const AffectedCv& cv : record.draw.affected())
       affected[study.plant.cvs[static_cast<std::size_t>(cv.cv)].name] = to_string(cv.by);
-    for (std::size_t cv = 0; cv < chain.cvs.size(); ++cv)
-      cvs.push_back(cv_json(study, chain, record.ivar_basis, cv));
+    for (Eigen::Index cv = 0; chain.answered() && cv < study.cv_count(); ++cv)
+      cvs.push_back(cv_json(study, record, cv));
     list.push_back({{"index", record.draw.index},
                     {"name", scenario_name(study, record)},
                     {"description", study.scenarios[static_cast<std::size_t>(record.draw.index)].description},

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/experiment/judgement.hpp"
+#include "analysis/methods/thesis/chain_numbers.hpp"
 #include "analysis/sensitivity/box_jenkins_sensitivity.hpp"
 #include "analysis/sensitivity/loop_interaction.hpp"
 #include "results/plot/plot_text.hpp"
@@ -104,8 +105,8 @@ Cell marked(const std::string& found, Correctness correctness) {
              : Cell(as_label(found)).toned(Cell::Tone::bad);
 }
 
-Number of_cv(const Eigen::VectorXd& values, Eigen::Index cv) {
-  return {cv >= 0 && cv < values.size() ? values(cv) : kNaN, NumberForm::fixed};
+Number of_cv(const AssessmentRecord& said, const char* name, Eigen::Index cv) {
+  return {cv >= 0 ? said.number(name, cv) : kNaN, NumberForm::fixed};
 }
 
 }  // namespace
@@ -256,8 +257,8 @@ Table wrong_table(const Study& study, const SummaryContent& parts, const std::st
   for (std::size_t i = 0; i < std::min(parts.wrong.size(), most); ++i) {
     const ExperimentRecord& record = *parts.wrong[i];
     const ExperimentDraw& draw = record.draw;
-    const Diagnosis verdict = record.chain();
-    const Judgement judgement = judge(study, record, *record.diagnosed());
+    const AssessmentRecord& verdict = record.chain();
+    const Judgement judgement = judge(study, record, verdict);
     const bool faultless = is_faultless(draw.kind);
     table.row({number(draw.index), kind_name(draw.kind), fault_cell(study, draw, file),
                as_label(cv_name(study, draw.true_cv())),
@@ -265,9 +266,9 @@ Table wrong_table(const Study& study, const SummaryContent& parts, const std::st
                       faultless ? Correctness::wrong : judgement.predicted_cv),
                marked(source_name(verdict.predicted_source),
                       faultless ? Correctness::wrong : judgement.predicted_source),
-               fixed(verdict.indicator.i_mpm), of_cv(verdict.ivar, draw.true_cv()),
-               of_cv(verdict.ivar_diag, draw.true_cv()), of_cv(verdict.ivar_diag, verdict.predicted_cv),
-               fixed(verdict.alone.dominance_mpm),
+               fixed(verdict.number("i_mpm")), of_cv(verdict, "ivar", draw.true_cv()),
+               of_cv(verdict, "ivar_diag", draw.true_cv()), of_cv(verdict, "ivar_diag", verdict.predicted_cv),
+               fixed(verdict.number("dominance_mpm")),
                as_label(fmt::format("mpmbench replay {} {}", file, draw.index))});
   }
   return table;
@@ -299,14 +300,13 @@ Table scenario_table(const Campaign& campaign, const std::string& file) {
        {"verdict", Table::Align::text}});
   for (const ExperimentRecord& record : campaign.records) {
     const std::string& description = study.scenarios[static_cast<std::size_t>(record.draw.index)].description;
-    const Diagnosis chain = record.chain();
-    const AssessmentRecord& said = *record.diagnosed();
+    const AssessmentRecord& said = record.chain();
     Cell fault = fault_cell(study, record.draw, file);
     if (!description.empty())
       fault.content = strong(as_label(description)) + ": " + std::get<std::string>(fault.content);
     table.row({as_label(scenario_name(study, record)), std::move(fault),
-               as_label(affected_text(study, record.draw)), as_label(flagged_text(study, chain)),
-               Number{total_simulation_error(chain)},
+               as_label(affected_text(study, record.draw)), as_label(flagged_text(study, said)),
+               Number{total_simulation_error(said)},
                Cell(as_label(scenario_verdict_text(study, record)))
                    .toned(!said.answered()                     ? Cell::Tone::plain
                           : judge(study, record, said).wrong() ? Cell::Tone::bad
@@ -319,12 +319,11 @@ Table index_table(const Campaign& campaign) {
   const Study& study = campaign.study;
   Table table("Ivar and Ivar_{diag} of every CV; *: outside the band of impact.",
               with_cvs({{"scenario", Table::Align::left}, {"index", Table::Align::left}}, study));
-  for (const ExperimentRecord& record : campaign.records) {
-    const Diagnosis chain = record.chain();
-    for (const auto& [name, values] :
-         {std::pair{"Ivar", &chain.ivar}, std::pair{"Ivar_{diag}", &chain.ivar_diag}}) {
-      std::vector<Cell> cells{as_label(scenario_name(study, record)), name};
-      for (const double value : *values) {
+  for (const ExperimentRecord& record : campaign.records)
+    for (const auto& [name, heading] : {std::pair{"ivar", "Ivar"}, std::pair{"ivar_diag", "Ivar_{diag}"}}) {
+      std::vector<Cell> cells{as_label(scenario_name(study, record)), heading};
+      const Eigen::MatrixXd values = record.chain().values(name);
+      for (const double value : values.reshaped()) {
         Cell cell = Number{value};
         if (study.diagnosis.has_impact(value)) {
           cell.mark = "*";
@@ -334,7 +333,6 @@ Table index_table(const Campaign& campaign) {
       }
       table.row(std::move(cells));
     }
-  }
   return table;
 }
 
@@ -347,12 +345,12 @@ Table indicator_table(const Campaign& campaign) {
                                                  {"co_{dskn}"},
                                                  {"SSE"}});
   for (const ExperimentRecord& record : campaign.records) {
-    const Diagnosis chain = record.chain();
-    for (std::size_t i = 0; i < chain.cvs.size(); ++i)
-      if (const CvDiagnosis& cv = chain.cvs[i]; cv.flagged)
-        table.row({as_label(scenario_name(study, record)), as_label(study.plant.cvs[i].name),
-                   Number{cv.distribution.mpm.i_mpm}, Number{cv.distribution.mpm.co_dkts},
-                   Number{cv.distribution.mpm.co_dskn}, Number{cv.sse}});
+    const AssessmentRecord& chain = record.chain();
+    for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+      if (chain.flags(cv))
+        table.row({as_label(scenario_name(study, record)), as_label(cv_name(study, cv)),
+                   Number{chain.number("cv_i_mpm", cv)}, Number{chain.number("cv_co_dkts", cv)},
+                   Number{chain.number("cv_co_dskn", cv)}, Number{chain.number("cv_sse", cv)}});
   }
   return table;
 }
@@ -370,16 +368,18 @@ Table acf_table(const Campaign& campaign) {
        {"ratio"},
        {"own"},
        {"verdict", Table::Align::text}});
-  const auto add = [&](const std::string& name, const Diagnosis& chain) {
-    for (std::size_t cv = 0; cv < chain.cvs.size(); ++cv)
-      if (const AcfComparison& acf = chain.cvs[cv].acf; acf_differs(acf))
-        table.row({as_label(name), as_label(study.plant.cvs[cv].name), Number{acf.y.decay_lag},
-                   Number{acf.y0.decay_lag}, Number{acf.decay_lag_ratio}, Number{acf.own_share},
-                   acf_text(acf)});
+  const auto add = [&](const std::string& name, Eigen::Index cv, const AcfComparison& acf) {
+    if (acf_differs(acf))
+      table.row({as_label(name), as_label(cv_name(study, cv)), Number{acf.y.decay_lag},
+                 Number{acf.y0.decay_lag}, Number{acf.decay_lag_ratio}, Number{acf.own_share},
+                 acf_text(acf)});
   };
-  add("basis case", campaign.basis.diagnosis);
+  Eigen::Index place = 0;
+  for (const CvDiagnosis& of_cv : campaign.basis.diagnosis.cvs)
+    add("basis case", place++, of_cv.acf);
   for (const ExperimentRecord& record : campaign.records)
-    add(scenario_name(study, record), record.chain());
+    for (Eigen::Index cv = 0; record.chain().answered() && cv < study.cv_count(); ++cv)
+      add(scenario_name(study, record), cv, cv_diagnosis(record.chain(), cv).acf);
   return table;
 }
 

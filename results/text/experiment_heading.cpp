@@ -14,14 +14,14 @@ namespace mpm {
 std::string verdict_text(const Study& study, const ExperimentRecord& record) {
   if (record.status != ExperimentStatus::ok)
     return std::string(to_string(record.status));
-  const Diagnosis chain = record.chain();
+  const AssessmentRecord& chain = record.chain();
   if (record.draw.named)
     return fmt::format("flagged {}; {}", flagged_text(study, chain), scenario_verdict_text(study, record));
-  if (chain.ivar.size() == 0)
+  if (!chain.answered())
     return "not assessed by the chain";
-  const double i_mpm = chain.indicator.i_mpm;
+  const double i_mpm = chain.number("i_mpm");
   return fmt::format(
-      "{}located {}, {}", chain.impactful ? "" : "no impact, ", cv_name(study, chain.predicted_cv),
+      "{}located {}, {}", chain.flagged ? "" : "no impact, ", cv_name(study, chain.predicted_cv),
       std::isnan(i_mpm) ? "no I_MPM"
                         : fmt::format("I_MPM {:.3f}: {}", i_mpm, source_name(chain.predicted_source)));
 }

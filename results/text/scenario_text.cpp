@@ -31,11 +31,11 @@ std::string affected_text(const Study& study, const ExperimentDraw& draw) {
   return text.empty() ? "none" : text;
 }
 
-std::string flagged_text(const Study& study, const Diagnosis& diagnosis) {
+std::string flagged_text(const Study& study, const AssessmentRecord& chain) {
   std::string text;
-  for (std::size_t cv = 0; cv < diagnosis.cvs.size(); ++cv)
-    if (diagnosis.cvs[cv].flagged)
-      add_source(text, study, static_cast<Eigen::Index>(cv), diagnosis.cvs[cv].source);
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    if (chain.flags(cv))
+      add_source(text, study, cv, chain.source_on(cv));
   return text.empty() ? "none" : text;
 }
 

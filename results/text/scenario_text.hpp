@@ -15,7 +15,7 @@ const std::string& scenario_name(const Study& study, const ExperimentRecord& rec
 std::string affected_text(const Study& study, const ExperimentDraw& draw);
 
 /// The CVs that are flagged, and the source that I_MPM points at, in the same form.
-std::string flagged_text(const Study& study, const Diagnosis& diagnosis);
+std::string flagged_text(const Study& study, const AssessmentRecord& chain);
 
 /// The verdict against the truth: "right", or what is wrong: "missed y2; false alarm y4; source of y1"; how
 /// the experiment ended when there is no verdict.

@@ -104,60 +104,6 @@ FaultSource source_of(ExperimentKind kind) {
   return FaultSource::none;
 }
 
-std::string_view to_string(ExperimentKind kind) {
-  switch (kind) {
-    case ExperimentKind::healthy:
-      return "healthy";
-    case ExperimentKind::mpm:
-      return "mpm";
-    case ExperimentKind::ud:
-      return "ud";
-    case ExperimentKind::mpm_ud:
-      return "mpm_ud";
-    case ExperimentKind::tuning:
-      return "tuning";
-    case ExperimentKind::other:
-      return "other";
-  }
-  return "unknown";
-}
-
-std::string_view to_string(FaultSource source) {
-  switch (source) {
-    case FaultSource::none:
-      return "none";
-    case FaultSource::mpm:
-      return "mpm";
-    case FaultSource::ud:
-      return "ud";
-    case FaultSource::mpm_ud:
-      return "mpm_ud";
-    case FaultSource::other:
-      return "other";
-  }
-  return "unknown";
-}
-
-std::string_view to_string(MismatchParameter parameter) {
-  switch (parameter) {
-    case MismatchParameter::gain:
-      return "gain";
-    case MismatchParameter::time_constant:
-      return "time_constant";
-    case MismatchParameter::dead_time:
-      return "dead_time";
-    case MismatchParameter::channel:
-      return "channel";
-    case MismatchParameter::second_order:
-      return "second_order";
-    case MismatchParameter::inverse_response:
-      return "inverse_response";
-    case MismatchParameter::sign:
-      return "sign";
-  }
-  return "unknown";
-}
-
 bool operator==(const Mismatch& a, const Mismatch& b) {
   return same_members(members(a), members(b));
 }

@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
 #include "plants/linear/transfer_matrix.hpp"
 #include "plants/nonlinear/nonlinear_model.hpp"
 
@@ -21,8 +21,8 @@ namespace mpm {
 /// one of the kind `other` something is wrong around the model: see OtherFault.
 enum class ExperimentKind : std::int8_t { healthy = 0, mpm = 1, ud = 2, mpm_ud = 3, tuning = 4, other = 5 };
 
-/// "healthy", "mpm", "ud", "mpm_ud", "tuning", "other"
-std::string_view to_string(ExperimentKind kind);
+template <>
+inline constexpr auto kWords<ExperimentKind> = word_list("healthy", "mpm", "ud", "mpm_ud", "tuning", "other");
 
 /// Is there neither mismatch nor disturbance, so that every verdict of a modelling error is a false alarm?
 inline bool is_faultless(ExperimentKind kind) {
@@ -35,8 +35,8 @@ enum class FaultSource : std::int8_t { none = 0, mpm = 1, ud = 2, mpm_ud = 3, ot
 /// The source of the faults of an experiment of this kind; none where model and plant agree, and for `other`.
 FaultSource source_of(ExperimentKind kind);
 
-/// "none", "mpm", "ud", "mpm_ud"
-std::string_view to_string(FaultSource source);
+template <>
+inline constexpr auto kWords<FaultSource> = word_list("none", "mpm", "ud", "mpm_ud", "other");
 
 /// Which parameter of a channel a model-plant mismatch changes, as in table 6.4, or what it adds to it.
 enum class MismatchParameter : std::int8_t {
@@ -49,8 +49,9 @@ enum class MismatchParameter : std::int8_t {
   sign = 6,              ///< the gain of the plant has the other sign: value = -1
 };
 
-/// "gain", "time_constant", "dead_time", "channel", "second_order", "inverse_response", "sign"
-std::string_view to_string(MismatchParameter parameter);
+template <>
+inline constexpr auto kWords<MismatchParameter> = word_list("gain", "time_constant", "dead_time", "channel",
+                                                            "second_order", "inverse_response", "sign");
 
 /// A model-plant mismatch: the channel (cv, input) of the plant differs from the model.
 struct Mismatch {

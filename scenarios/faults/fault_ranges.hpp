@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
 #include "scenarios/faults/fault.hpp"
 #include "scenarios/faults/signal_sequence.hpp"
 #include "scenarios/random/distribution.hpp"
@@ -26,11 +26,9 @@ enum class MismatchExtent : std::int8_t {
   plant = 4,      ///< one parameter of every channel from an MV, each by its own amount
 };
 
-inline constexpr std::array kMismatchExtents{MismatchExtent::parameter, MismatchExtent::channel,
-                                             MismatchExtent::cv, MismatchExtent::mv, MismatchExtent::plant};
-
-/// "parameter", "channel", "cv", "mv", "plant"
-std::string_view to_string(MismatchExtent extent);
+template <>
+inline constexpr auto kWords<MismatchExtent> = word_list("parameter", "channel", "cv", "mv", "plant");
+inline constexpr auto kMismatchExtents = enumerators<MismatchExtent>();
 
 /// The parameters that random mismatches change.
 inline constexpr std::array kRandomMismatchParameters{
@@ -77,12 +75,10 @@ enum class DisturbanceShape : std::int8_t {
   burst = 5
 };
 
-inline constexpr std::array kDisturbanceShapes{DisturbanceShape::white, DisturbanceShape::step,
-                                               DisturbanceShape::ramp,  DisturbanceShape::random_walk,
-                                               DisturbanceShape::sine,  DisturbanceShape::burst};
-
-/// "white", "step", "ramp", "random_walk", "sine", "burst"
-std::string_view to_string(DisturbanceShape shape);
+template <>
+inline constexpr auto kWords<DisturbanceShape> = word_list("white", "step", "ramp", "random_walk", "sine",
+                                                           "burst");
+inline constexpr auto kDisturbanceShapes = enumerators<DisturbanceShape>();
 
 /// Where a random disturbance is added.
 enum class DisturbancePlace : std::int8_t {
@@ -91,11 +87,9 @@ enum class DisturbancePlace : std::int8_t {
   several = 2,  ///< two or three CVs, each through its own G_d from the same v
 };
 
-inline constexpr std::array kDisturbancePlaces{DisturbancePlace::cv, DisturbancePlace::mv,
-                                               DisturbancePlace::several};
-
-/// "cv", "mv", "several"
-std::string_view to_string(DisturbancePlace place);
+template <>
+inline constexpr auto kWords<DisturbancePlace> = word_list("cv", "mv", "several");
+inline constexpr auto kDisturbancePlaces = enumerators<DisturbancePlace>();
 
 /// Ranges of the random unmeasured disturbances: G_d = gain / (time_constant s + 1) driven by v. White v is
 /// normal with v_standard_deviation; a signal of another shape has the size at which y_d has the variance

@@ -23,28 +23,6 @@ void require_width(const char* name, double width) {
 
 }  // namespace
 
-std::string_view to_string(OtherFaultKind kind) {
-  switch (kind) {
-    case OtherFaultKind::sensor_bias:
-      return "sensor_bias";
-    case OtherFaultKind::sensor_drift:
-      return "sensor_drift";
-    case OtherFaultKind::stiction:
-      return "stiction";
-    case OtherFaultKind::deadband:
-      return "deadband";
-    case OtherFaultKind::md_gain:
-      return "md_gain";
-    case OtherFaultKind::md_noise:
-      return "md_noise";
-    case OtherFaultKind::limit:
-      return "limit";
-    case OtherFaultKind::held_mv:
-      return "held_mv";
-  }
-  return "unknown";
-}
-
 VariableSort sort_of(OtherFaultKind kind) {
   switch (kind) {
     case OtherFaultKind::sensor_bias:

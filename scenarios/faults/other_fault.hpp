@@ -3,11 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/random/distribution.hpp"
 
@@ -27,13 +27,11 @@ enum class OtherFaultKind : std::int8_t {
   held_mv = 7,
 };
 
-inline constexpr std::array kOtherFaultKinds{OtherFaultKind::sensor_bias, OtherFaultKind::sensor_drift,
-                                             OtherFaultKind::stiction,    OtherFaultKind::deadband,
-                                             OtherFaultKind::md_gain,     OtherFaultKind::md_noise,
-                                             OtherFaultKind::limit,       OtherFaultKind::held_mv};
-
-/// "sensor_bias", "sensor_drift", "stiction", "deadband", "md_gain", "md_noise", "limit", "held_mv"
-std::string_view to_string(OtherFaultKind kind);
+template <>
+inline constexpr auto kWords<OtherFaultKind> = word_list("sensor_bias", "sensor_drift", "stiction",
+                                                         "deadband", "md_gain", "md_noise", "limit",
+                                                         "held_mv");
+inline constexpr auto kOtherFaultKinds = enumerators<OtherFaultKind>();
 
 /// What a fault of this kind is about.
 enum class VariableSort { cv, mv, md };

@@ -32,20 +32,6 @@ bool has_weight(const MpcOptions& controller, TuningParameter parameter, Eigen::
 
 }  // namespace
 
-std::string_view to_string(TuningParameter parameter) {
-  switch (parameter) {
-    case TuningParameter::move_suppression:
-      return "move_suppression";
-    case TuningParameter::target_weight:
-      return "target_weight";
-    case TuningParameter::slack_weight:
-      return "slack_weight";
-    case TuningParameter::setpoint_weight:
-      return "setpoint_weight";
-  }
-  return "unknown";
-}
-
 bool is_of_mv(TuningParameter parameter) {
   return parameter == TuningParameter::move_suppression || parameter == TuningParameter::target_weight;
 }

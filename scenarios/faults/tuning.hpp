@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
 #include "scenarios/random/distribution.hpp"
 #include "solvers/mpc_options.hpp"
 
@@ -23,12 +23,11 @@ enum class TuningParameter : std::int8_t {
   setpoint_weight = 3,   ///< of a CV with a setpoint
 };
 
-inline constexpr std::array kTuningParameters{TuningParameter::move_suppression,
-                                              TuningParameter::target_weight, TuningParameter::slack_weight,
-                                              TuningParameter::setpoint_weight};
-
 /// The name of the member of MpcOptions.
-std::string_view to_string(TuningParameter parameter);
+template <>
+inline constexpr auto kWords<TuningParameter> = word_list("move_suppression", "target_weight", "slack_weight",
+                                                          "setpoint_weight");
+inline constexpr auto kTuningParameters = enumerators<TuningParameter>();
 
 /// Is it a weight of an MV? Otherwise it is one of a CV.
 bool is_of_mv(TuningParameter parameter);

@@ -162,22 +162,6 @@ Eigen::VectorXd shares(const Onset& onset, Eigen::Index samples) {
 
 }  // namespace
 
-std::string_view to_string(LoopFailure failure) {
-  switch (failure) {
-    case LoopFailure::none:
-      return "none";
-    case LoopFailure::solver:
-      return "solver";
-    case LoopFailure::plant:
-      return "plant";
-    case LoopFailure::no_steady_state:
-      return "no_steady_state";
-    case LoopFailure::controller:
-      return "controller";
-  }
-  return "unknown";
-}
-
 void SolverStatistics::add(const SolverStatistics& other) {
   steps += other.steps;
   iterations += other.iterations;

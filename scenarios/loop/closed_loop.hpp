@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
 #include "plants/linear/transfer_matrix.hpp"
 #include "plants/plant.hpp"
 #include "scenarios/loop/experiment_draw.hpp"
@@ -37,8 +37,9 @@ enum class LoopFailure {
   controller,       ///< the program that is the controller gave no move
 };
 
-/// "none", "solver", "plant", "no_steady_state", "controller"
-std::string_view to_string(LoopFailure failure);
+template <>
+inline constexpr auto kWords<LoopFailure> = word_list("none", "solver", "plant", "no_steady_state",
+                                                      "controller");
 
 /// The data of one closed loop; one row a variable, one column a sample.
 ///

@@ -44,6 +44,22 @@ inline AssessmentRecord chain_says(std::shared_ptr<const AssessmentForm> form, c
   return kept(std::move(form), assessment);
 }
 
+/// The diagnosis that an answer of the chain tells of.
+inline Diagnosis diagnosis_of(const AssessmentRecord& said) {
+  Diagnosis diagnosis;
+  if (!said.answered())
+    return diagnosis;
+  diagnosis.impactful = said.flagged;
+  diagnosis.predicted_cv = said.predicted_cv;
+  diagnosis.predicted_source = said.predicted_source;
+  const Eigen::Index ny = said.values("ivar").rows();
+  for (const Row<Diagnosis>& row : chain_rows(ny))
+    put_numbers(row, diagnosis, said.numbers.data() + said.form->find(row.text.name)->first);
+  for (Eigen::Index cv = 0; said.form->find("cv_sse") != nullptr && cv < ny; ++cv)
+    diagnosis.cvs.push_back(cv_diagnosis(said, cv));
+  return diagnosis;
+}
+
 /// An answer without numbers of its own: what is said of the loop, and of one CV when there is one.
 inline AssessmentRecord verdict(std::shared_ptr<const AssessmentForm> form, bool flagged, double score = 0.0,
                                 Eigen::Index cv = -1, FaultSource source = FaultSource::none) {

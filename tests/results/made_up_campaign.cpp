@@ -71,27 +71,27 @@ MpmIndicator indicator(Numbers& numbers) {
           numbers.next(), numbers.index(100), numbers.index(100)};
 }
 
-/// Any numbers for columns of quantities, any of the words for verdicts.
+/// Any numbers for quantities, any of the words for verdicts.
 template <class Owner>
-void fill(Numbers& numbers, Owner& owner, const std::vector<NumberColumn<Owner>>& columns) {
-  for (const NumberColumn<Owner>& column : columns)
-    column.set(owner,
-               column.words.empty()
-                   ? numbers.next()
-                   : static_cast<double>(numbers.index(static_cast<Eigen::Index>(column.words.size()))));
+void fill(Numbers& numbers, Owner& owner, const std::vector<Row<Owner>>& rows) {
+  for (const Row<Owner>& row : rows) {
+    const std::vector<NumberWord>& words = row.text.words;
+    const double value = words.empty() ? numbers.next() : numbers.index(std::ssize(words));
+    put_numbers(row, owner, &value);
+  }
 }
 
 DistributionIndicators distribution(Numbers& numbers) {
   DistributionIndicators made;
   made.mpm = indicator(numbers);
-  fill(numbers, made, distribution_columns());
-  fill(numbers, made, scatter_columns());
+  fill(numbers, made, distribution_rows());
+  fill(numbers, made, scatter_rows());
   return made;
 }
 
 AcfComparison acf(Numbers& numbers, Eigen::Index samples) {
   AcfComparison made;
-  fill(numbers, made, acf_columns());
+  fill(numbers, made, acf_rows());
   for (AcfFeatures* features : {&made.y, &made.y0, &made.y0_diag})
     features->values = numbers.vector(samples / 4 + 1);
   return made;

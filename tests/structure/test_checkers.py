@@ -255,28 +255,28 @@ class UsedNames(CheckerTest):
     HEADER = HEADER + "struct Row {\n  int size;\n};\nint row_count(const Row& row);\n"
 
     def assert_missing(self, source, text, **more):
-        self.assert_one(check_used_names, {"plants/row.hpp": self.HEADER, "plants/b.cpp": source, **more},
+        self.assert_one(check_used_names, {"base/row.hpp": self.HEADER, "plants/b.cpp": source, **more},
                         "plants/b.cpp:1:", text)
 
     def test_what_is_included_itself_or_by_a_header_of_the_project_is_there(self):
         self.assert_clean(check_used_names, {
-            "plants/row.hpp": self.HEADER,
-            "plants/a.hpp": HEADER + '#include <vector>\n#include "plants/row.hpp"\n',
+            "base/row.hpp": self.HEADER,
+            "plants/a.hpp": HEADER + '#include <vector>\n#include "base/row.hpp"\n',
             "plants/b.cpp": '#include "plants/a.hpp"\nint f(std::vector<Row> rows) { return row_count(rows[0]); }\n'})
 
     def test_a_name_of_the_standard_library_without_its_header(self):
         self.assert_missing("#include <vector>\nauto f(int* p) { return std::move(p); }\n", "std::move is used without <utility>")
 
     def test_a_type_of_the_project_without_its_header(self):
-        self.assert_missing("int f(Row& row);\n", "Row is used without plants/row.hpp")
-        self.assert_missing("int f(const Row& row);\n", "Row is used without plants/row.hpp")
+        self.assert_missing("int f(Row& row);\n", "Row is used without base/row.hpp")
+        self.assert_missing("int f(const Row& row);\n", "Row is used without base/row.hpp")
 
     def test_a_function_of_the_project_without_its_header(self):
-        self.assert_missing("int f() { return row_count({}); }\n", "row_count is used without plants/row.hpp")
+        self.assert_missing("int f() { return row_count({}); }\n", "row_count is used without base/row.hpp")
 
     def test_comments_texts_and_names_of_its_own_use_nothing(self):
         self.assert_clean(check_used_names, {
-            "plants/row.hpp": self.HEADER,
+            "base/row.hpp": self.HEADER,
             "plants/b.cpp": 'struct Row;  // std::vector\nconst char* f(Row& one) { return "std::move row_count("; }\n',
             "plants/c.cpp": "int f() {\n  const auto row_count = [] { return 1; };\n  return row_count();\n}\n"})
 

@@ -12,7 +12,8 @@ ABOVE_THE_ROOMS = ["tests", "examples", "python", "octave"]
 # The folders of a room, in the same way: a file includes only its own folder and folders to its left. A header of
 # the room itself that its folders may include stands here by its name.
 FOLDERS = {
-    "base": ["error.hpp", "non_finite.hpp", "row_major.hpp", "same_members.hpp", "sha256.hpp", "system"],
+    "base": ["enum_words.hpp", "error.hpp", "non_finite.hpp", "number_text.hpp", "row_major.hpp", "row.hpp",
+             "same_members.hpp", "sha256.hpp", "system"],
     "plants": ["plant.hpp", "linear",
                "nonlinear", "outside", "models"],
     "scenarios": ["random", "toml", "faults", "controller", "study", "loop"],

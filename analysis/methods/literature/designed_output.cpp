@@ -132,18 +132,6 @@ void require_record(const Signals& y, const Signals& y_hat, const Signals& y_set
 
 }  // namespace
 
-std::string_view to_string(ClosedLoopModelStatus status) {
-  switch (status) {
-    case ClosedLoopModelStatus::identified:
-      return "identified";
-    case ClosedLoopModelStatus::zero:
-      return "zero";
-    case ClosedLoopModelStatus::no_model:
-      break;
-  }
-  return "no model";
-}
-
 void DesignedOutputOptions::validate() const {
   if (orders.empty())
     throw InputError("orders of a designed output", "none", "1 or more");

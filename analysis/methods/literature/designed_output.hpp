@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/identification/polynomial_model.hpp"
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -45,7 +45,8 @@ enum class ClosedLoopModelStatus : std::int8_t {
   no_model = 2,  ///< no order gave a model with a finite output
 };
 
-std::string_view to_string(ClosedLoopModelStatus status);
+template <>
+inline constexpr auto kWords<ClosedLoopModelStatus> = word_list("identified", "zero", "no model");
 
 /// One row of S_d or Delta G K: an output-error model from all eps (`oe` of one output in Matlab).
 struct ClosedLoopModel {

@@ -26,20 +26,6 @@ void require_limits(const Eigen::Ref<const Eigen::MatrixXd>& u, const MvLimits& 
 
 }  // namespace
 
-std::string to_string(MvUse use) {
-  switch (use) {
-    case MvUse::evaluated:
-      return "evaluated";
-    case MvUse::saturated:
-      return "saturated";
-    case MvUse::standing_still:
-      return "standing still";
-    case MvUse::dependent:
-      return "dependent";
-  }
-  return "unknown";
-}
-
 Eigen::VectorXd saturated_shares(const Eigen::Ref<const Eigen::MatrixXd>& u, const MvLimits& limits) {
   require_limits(u, limits);
   Eigen::VectorXd shares(u.rows());

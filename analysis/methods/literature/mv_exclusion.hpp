@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
+
 namespace mpm {
 
 /// Whether an MV carries information about its channels.
@@ -16,8 +18,8 @@ enum class MvUse : std::int8_t {
   dependent = 3,       ///< moves only as the other MVs make it: nothing of its own is left to correlate
 };
 
-/// "evaluated", "saturated", ...
-std::string to_string(MvUse use);
+template <>
+inline constexpr auto kWords<MvUse> = word_list("evaluated", "saturated", "standing still", "dependent");
 
 /// Limits of the MVs, one entry an MV; infinite where there is none.
 struct MvLimits {

@@ -101,21 +101,6 @@ void VariabilityOptions::validate() const {
     throw InputError("largest_lag", fmt::format("{}", largest_lag), "0 (all lags) or more");
 }
 
-std::string_view to_string(VariabilityChange change) {
-  switch (change) {
-    case VariabilityChange::worse:
-      return "worse";
-    case VariabilityChange::better:
-      return "better";
-    default:
-      return "none";
-  }
-}
-
-std::string_view to_string(VariabilityStatus status) {
-  return status == VariabilityStatus::ok ? "ok" : "singular benchmark";
-}
-
 VariabilityComparison compare_variability(const Eigen::Ref<const Eigen::MatrixXd>& benchmark,
                                           const Eigen::Ref<const Eigen::MatrixXd>& monitored,
                                           const VariabilityOptions& options) {

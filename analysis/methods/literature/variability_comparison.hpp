@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/statistics/interval.hpp"
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -31,8 +31,8 @@ enum class VariabilityChange : std::int8_t {
   better = 2,  ///< both limits lie below 1
 };
 
-/// "none", "worse" or "better".
-std::string_view to_string(VariabilityChange change);
+template <>
+inline constexpr auto kWords<VariabilityChange> = word_list("none", "worse", "better");
 
 /// One generalised eigenvector (2.8).
 struct VariabilityDirection {
@@ -51,8 +51,8 @@ enum class VariabilityStatus : std::int8_t {
   singular_benchmark = 1,
 };
 
-/// "ok" or "singular benchmark".
-std::string_view to_string(VariabilityStatus status);
+template <>
+inline constexpr auto kWords<VariabilityStatus> = word_list("ok", "singular benchmark");
 
 /// The result of a comparison of a monitored period with a benchmark period.
 struct VariabilityComparison {

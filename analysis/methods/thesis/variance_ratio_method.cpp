@@ -68,7 +68,7 @@ AssessmentMethodInfo variance_ratio_method() {
        .verdict = "var y / var y_benchmark of some CV lies outside the band of impact",
        .requirements = {.benchmark = true, .complete_record = false},
        .locates_cvs = true,
-       .numbers = {{.name = "ratio", .meaning = "var y / var y_benchmark", .estimates_ivar_basis = true}}},
+       .numbers = {{"ratio", NumberScope::cv, "var y / var y_benchmark", "1", NumberFinding::regression}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<VarianceRatio>(context); }};
 }

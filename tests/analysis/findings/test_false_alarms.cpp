@@ -86,8 +86,8 @@ TEST_CASE("a bad tuning is diagnosed by its own S0 against the basis case of the
   const NominalOutputs nominal =
       NominalEstimator(own->study, own->basis.point, own->basis.sensitivity, factory()).estimate(loop);
   const Diagnosis expected = DiagnosisChain(study).diagnose(loop.y, nominal);
-  CHECK(record.chain().ivar == expected.ivar);
-  CHECK(record.chain().indicator.i_mpm == expected.indicator.i_mpm);
+  CHECK(record.chain().values("ivar") == expected.ivar);
+  CHECK(record.chain().number("i_mpm") == expected.indicator.i_mpm);
   CHECK(record.ivar_basis == basis_variance_indices(study, loop.y, basis.trajectory.y));
   CHECK(record.perturbed.damping.size() == 0);
 
@@ -96,8 +96,8 @@ TEST_CASE("a bad tuning is diagnosed by its own S0 against the basis case of the
       ExperimentRunner(study, basis, {"botelho"}, factory()).run(index, StorePolicy::none);
   const NominalOutputs of_design =
       NominalEstimator(study, basis.point, basis.sensitivity, factory()).estimate(loop);
-  CHECK(unnoticed.chain().ivar == DiagnosisChain(study).diagnose(loop.y, of_design).ivar);
-  CHECK(unnoticed.chain().ivar != record.chain().ivar);
+  CHECK(unnoticed.chain().values("ivar") == DiagnosisChain(study).diagnose(loop.y, of_design).ivar);
+  CHECK(unnoticed.chain().values("ivar") != record.chain().values("ivar"));
 }
 
 TEST_CASE("without noise no tuning makes an alarm, whatever S0", "[false_alarms]") {
@@ -112,8 +112,8 @@ TEST_CASE("without noise no tuning makes an alarm, whatever S0", "[false_alarms]
          {TuningParameter::move_suppression, TuningParameter::target_weight, TuningParameter::slack_weight}) {
       const ExperimentRecord record = runner.run(index_of(study, parameter), StorePolicy::none);
       REQUIRE(record.status == ExperimentStatus::ok);
-      CHECK((record.chain().ivar.array() - 1.0).abs().maxCoeff() < 1e-6);
-      CHECK((record.chain().ivar_diag.array() - 1.0).abs().maxCoeff() < 1e-6);
+      CHECK((record.chain().values("ivar").array() - 1.0).abs().maxCoeff() < 1e-6);
+      CHECK((record.chain().values("ivar_diag").array() - 1.0).abs().maxCoeff() < 1e-6);
       CHECK_FALSE(judge(study, record, record.assessments[0]).wrong());
     }
   }
@@ -138,7 +138,7 @@ TEST_CASE("a controller that does not run on its own model makes the experiment 
     CHECK_FALSE(own->basis.explanation.empty());
     const ExperimentRecord record = runner.run(index, StorePolicy::none);
     CHECK(record.status == ExperimentStatus::infeasible);
-    CHECK(record.chain().ivar.size() == 0);
+    CHECK(record.chain().values("ivar").size() == 0);
     only_own += simulate_experiment(study, draw, factory()).status == ControlStatus::ok ? 1 : 0;
   }
   CHECK(only_own > 0);

@@ -7,7 +7,7 @@
 #include "analysis/indicators/acf_comparison.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
-#include "tests/analysis/column_checks.hpp"
+#include "tests/analysis/row_checks.hpp"
 #include "tests/analysis/signals.hpp"
 
 using Eigen::Index;
@@ -183,11 +183,11 @@ TEST_CASE("with a setpoint the functions are those of the control errors") {
   const VectorXd y_set = 5.0 * white_noise(400, 8);
   const auto plain = compare_autocorrelations(error, error0, error0, VectorXd::Zero(400));
   const auto found = compare_autocorrelations(error + y_set, error0 + y_set, error0 + y_set, y_set);
-  for (const auto& column : mpm::acf_columns()) {
-    INFO(column.name);
-    const double expected = column.value(plain);
-    CHECK((std::isnan(expected) ? std::isnan(column.value(found))
-                                : column.value(found) == Approx(expected).epsilon(1e-9)));
+  for (const auto& row : mpm::acf_rows()) {
+    INFO(row.text.name);
+    const double expected = numbers_of(row, plain).front();
+    CHECK((std::isnan(expected) ? std::isnan(numbers_of(row, found).front())
+                                : numbers_of(row, found).front() == Approx(expected).epsilon(1e-9)));
   }
   // About a setpoint that it never reaches, a signal does not decay, and no band holds; about its mean it
   // does.
@@ -199,18 +199,18 @@ TEST_CASE("with a setpoint the functions are those of the control errors") {
         Approx(compare_autocorrelations(error, error0, error0).decay_lag_ratio).epsilon(1e-9));
 }
 
-TEST_CASE("every number of a comparison has one column") {
-  const auto columns = mpm::acf_columns();
-  mpm::testing::check_columns(columns, 3 * 4 + 7 + 2);
+TEST_CASE("every number of a comparison has one row") {
+  const auto rows = mpm::acf_rows();
+  mpm::testing::check_rows(rows, 3 * 4 + 7 + 2);
   AcfComparison marked;
   marked.y0_diag.oscillation.period = 12.0;
   marked.speed = LoopSpeed::faster;
-  for (const auto& column : columns) {
-    if (column.name == "period_y0_diag") {
-      CHECK(column.value(marked) == 12.0);
+  for (const auto& row : rows) {
+    if (row.text.name == "period_y0_diag") {
+      CHECK(numbers_of(row, marked).front() == 12.0);
     }
-    if (column.name == "loop_speed") {
-      CHECK(column.value(marked) == 3.0);
+    if (row.text.name == "loop_speed") {
+      CHECK(numbers_of(row, marked).front() == 3.0);
     }
   }
   CHECK(mpm::to_string(LoopSpeed::slower) == "slower");

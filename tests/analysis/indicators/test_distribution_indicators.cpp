@@ -8,7 +8,7 @@
 #include "analysis/indicators/distribution_indicators.hpp"
 #include "analysis/indicators/scatter_ellipse.hpp"
 #include "base/error.hpp"
-#include "tests/analysis/column_checks.hpp"
+#include "tests/analysis/row_checks.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/plants/allocation_counter.hpp"
 
@@ -198,11 +198,12 @@ TEST_CASE("neither the sign of the error nor the scale of a signal matters") {
   const VectorXd e0 = 0.3 * y0 + autoregression(250, 0.7, 8);
   const WindowScan scan{15, 45, 5};
   const auto base = indicators(y0, e0, scan, 20);
-  const auto columns = mpm::distribution_columns();
+  const auto rows = mpm::distribution_rows();
   const auto check_equal = [&](const DistributionIndicators& other) {
-    for (const auto& column : columns) {
-      INFO(column.name);
-      CHECK(column.value(other) == Approx(column.value(base)).epsilon(1e-5).margin(1e-9));
+    for (const auto& row : rows) {
+      INFO(row.text.name);
+      CHECK(numbers_of(row, other).front() ==
+            Approx(numbers_of(row, base).front()).epsilon(1e-5).margin(1e-9));
     }
   };
   check_equal(indicators(y0, -e0, scan, 20));  // e0 = y - y0, as chapter 3 has it
@@ -282,39 +283,39 @@ TEST_CASE("a signal that stands still has no shape, and no mean") {
   const auto found = indicators(white_noise(100, 11), VectorXd::Constant(100, 2.0), {10, 20, 1}, 15);
   const auto none = indicators(white_noise(100, 12), VectorXd::Zero(100), {10, 20, 1}, 15);
   for (const auto& result : {found, none}) {
-    for (const auto& column : mpm::distribution_columns()) {
-      INFO(column.name);
-      CHECK(std::isnan(column.value(result)));
+    for (const auto& row : mpm::distribution_rows()) {
+      INFO(row.text.name);
+      CHECK(std::isnan(numbers_of(row, result).front()));
     }
     for_each(result.means, [](const ScatterMeans& z) { CHECK(z.used == 0); });
   }
 }
 
-TEST_CASE("every indicator has one column") {
-  const auto columns = mpm::distribution_columns();
-  mpm::testing::check_columns(columns, 4 * 5 + 4 * 4 + 1);
+TEST_CASE("every indicator has one row") {
+  const auto rows = mpm::distribution_rows();
+  mpm::testing::check_rows(rows, 4 * 5 + 4 * 4 + 1);
   DistributionIndicators marked;
   marked.means.dskn.ce = 0.25;
   marked.shape.kts.regression_angle = 12.5;
-  for (const auto& column : columns) {
-    if (column.name == "ce_dskn") {
-      CHECK(column.value(marked) == 0.25);
-    } else if (column.name == "regression_angle_kts") {
-      CHECK(column.value(marked) == 12.5);
+  for (const auto& row : rows) {
+    if (row.text.name == "ce_dskn") {
+      CHECK(numbers_of(row, marked).front() == 0.25);
+    } else if (row.text.name == "regression_angle_kts") {
+      CHECK(numbers_of(row, marked).front() == 12.5);
     } else {
-      CHECK(std::isnan(column.value(marked)));
+      CHECK(std::isnan(numbers_of(row, marked).front()));
     }
   }
 }
 
-TEST_CASE("the columns of a result put back are that result, its ellipses and I_MPM included") {
+TEST_CASE("the rows of a result put back are that result, its ellipses and I_MPM included") {
   const VectorXd y0 = autoregression(300, 0.9, 21);
   const VectorXd y = y0 + autoregression(300, 0.5, 22);
   const auto result = DistributionScanner(300).compute(y, y0, y0 + 0.1 * y, {20, 60, 1}, 40);
   DistributionIndicators again;
-  for (const auto& columns : {mpm::distribution_columns(), mpm::scatter_columns()}) {
-    for (const auto& column : columns) {
-      column.set(again, column.value(result));
+  for (const auto& rows : {mpm::distribution_rows(), mpm::scatter_rows()}) {
+    for (const auto& row : rows) {
+      put_numbers(row, again, numbers_of(row, result).data());
     }
   }
   CHECK(again.mpm.i_mpm == result.mpm.i_mpm);

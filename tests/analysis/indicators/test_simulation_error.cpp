@@ -1,8 +1,5 @@
-#include <cmath>
-
 #include <catch2/catch.hpp>
 
-#include "analysis/indicators/diagnosis.hpp"
 #include "analysis/indicators/simulation_error.hpp"
 #include "base/error.hpp"
 
@@ -17,13 +14,6 @@ TEST_CASE("simulation errors: norms of rows, whatever the signals have in common
   CHECK(simulation_errors(y, y_sim) == Eigen::Vector2d(5, 0));
   CHECK(simulation_errors(y.array() + 9, y_sim.array() + 9) == Eigen::Vector2d(5, 0));
   CHECK_THROWS_AS(simulation_errors(y, y_sim.leftCols(2)), InputError);
-
-  Diagnosis diagnosis;
-  CHECK(std::isnan(total_simulation_error(diagnosis)));
-  diagnosis.cvs.resize(2);
-  diagnosis.cvs[0].sse = 5;
-  diagnosis.cvs[1].sse = 0.5;
-  CHECK(total_simulation_error(diagnosis) == 5.5);
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ TEST_CASE("every method describes itself, and each of its numbers once") {
       CHECK(of_method.insert(number.name).second);
       CHECK_FALSE(number.meaning.empty());
       CHECK_FALSE(number.unit.empty());
-      CHECK((!number.summarised || (number.scope == NumberScope::loop && !number.label.empty())));
+      CHECK((number.finding != NumberFinding::summary ||
+             (number.scope == NumberScope::loop && !number.heading.empty())));
     }
   }
 }

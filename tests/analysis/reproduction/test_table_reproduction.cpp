@@ -16,6 +16,7 @@
 #include "analysis/study_files/table_file.hpp"
 #include "base/error.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "tests/analysis/made_up_record.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace mpm {
@@ -83,7 +84,7 @@ TEST_CASE("the numbers of a table are those of the experiments of a run", "[repr
   const BasisCase basis = run_basis_case(study, testing::kFactory);
   const ExperimentRecord record =
       ExperimentRunner(study, basis, {"botelho"}, testing::kFactory).run(1, StorePolicy::none);
-  const Diagnosis diagnosis = record.chain();
+  const Diagnosis diagnosis = testing::diagnosis_of(record.chain());
   const std::vector<ReproducedCell>& cells = result.rows[0].cells;
   CHECK(cells[0].ours == diagnosis.ivar(0));  // the same bits
   CHECK(cells[1].ours == diagnosis.ivar_diag(0));

@@ -142,7 +142,7 @@ TEST_CASE("S0 curves: quartiles of the ratios, and changes within the tolerance 
   std::vector<ExperimentRecord> records;
   for (std::int64_t i = 0; i < 5; ++i) {
     records.push_back(testing::made_up_record(i, ExperimentKind::ud, 1, 0.0));
-    const double truth = records.back().chain().ivar_diag(1);
+    const double truth = records.back().chain().number("ivar_diag", 1);
     const double step = 0.1 * static_cast<double>(i);
     records.back().perturbed.time_constant = truth * Eigen::Vector4d(9.0, 1.0 - step, 1.0, 1.05);
     records.back().perturbed.damping = truth * Eigen::Vector4d(1.0, 1.0, 1.0, 1.0);

@@ -279,8 +279,9 @@ TEST_CASE("archive: records that are read in blocks of any size are those that a
   Campaign campaign = made_up_campaign();
   campaign.records.erase(campaign.records.begin() + 2, campaign.records.begin() + 9);
   write_archive(folder / "a.h5", campaign, findings_of(campaign));
-  const ArchiveRecordReader reader(Hdf5File::open(folder / "a.h5").root(), campaign.study, forms_of(campaign),
-                                   "a.h5");
+  const AssessmentForms forms = forms_of(campaign);
+  const ArchiveRecordReader reader(Hdf5File::open(folder / "a.h5").root(), campaign.study, forms,
+                                   record_tables(campaign.study, forms), "a.h5");
   const RecordBytes bytes(campaign.study, forms_of(campaign));
   const std::size_t size = campaign.records.size();
   REQUIRE(reader.size() == size);

@@ -32,17 +32,14 @@ MethodDescription foreign_description() {
   method.requirements.benchmark = true;
   method.stated_false_alarms = 0.07;
   method.locates_cvs = method.names_channels = method.tells_sources = true;
-  method.numbers = {
-      {.name = "novelty",
-       .scope = NumberScope::loop,
-       .meaning = "how new",
-       .unit = "K",
-       .summarised = true,
-       .label = "N_{new}"},
-      {.name = "verdict", .scope = NumberScope::loop, .meaning = "in words", .words = {"good", "very bad"}},
-      {.name = "shape", .scope = NumberScope::cv, .meaning = "of each CV", .estimates_ivar_basis = true},
-      {.name = "gain", .scope = NumberScope::channel, .meaning = "of each channel"},
-      {.name = "memory", .scope = NumberScope::cv_lag, .meaning = "of each CV at each lag"}};
+  method.numbers = {{{.name = "novelty", .meaning = "how new", .unit = "K", .heading = "N_{new}"},
+                     NumberScope::loop,
+                     NumberFinding::summary},
+                    {{.name = "verdict", .meaning = "in words", .words = numbered({"good", "very bad"})},
+                     NumberScope::loop},
+                    {"shape", NumberScope::cv, "of each CV", "1", NumberFinding::regression},
+                    {"gain", NumberScope::channel, "of each channel"},
+                    {"memory", NumberScope::cv_lag, "of each CV at each lag"}};
   return method;
 }
 
@@ -76,7 +73,11 @@ TEST_CASE("foreign method: an archive brings its description and every number of
   CHECK((found.requirements.benchmark && !found.requirements.setpoints));
   CHECK((found.locates_cvs && found.names_channels && found.tells_sources));
   REQUIRE(found.numbers.size() == 5);
-  CHECK(found.numbers[1].words == std::vector<std::string>{"good", "very bad"});
+  REQUIRE(found.numbers[1].words.size() == 2);
+  CHECK(found.numbers[1].words[1].word == "very bad");
+  CHECK(found.numbers[0].heading == "N_{new}");
+  CHECK(found.numbers[0].finding == NumberFinding::summary);
+  CHECK(found.numbers[2].finding == NumberFinding::regression);
   CHECK(read.methods.back().git_sha == "fff");
   const RecordBytes format(campaign.study, forms_of(campaign));
   bool answered = false;

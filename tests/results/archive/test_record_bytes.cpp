@@ -36,29 +36,25 @@ RecordBytes bytes_for(const Campaign& campaign) {
   return {campaign.study, forms_of(campaign)};
 }
 
-/// The values of a variable of one record as bytes, by the description alone.
-std::string bits_of(const RecordVariable& variable, const ExperimentRecord& record) {
+/// The values of a row of one record as bytes, by the description alone.
+std::string bits_of(const RecordRow& row, const ExperimentRecord& record) {
   ByteWriter writer;
-  std::visit(
-      [&]<class T>(const RecordAccess<T>& access) {
-        std::vector<T> values(variable.size());
-        access.get(record, values.data());
-        for (const T& value : values)
-          transfer(writer, value);
-      },
-      variable.access);
+  take_values(row, record, [&](const auto& values) {
+    for (const auto& value : values)
+      transfer(writer, value);
+  });
   return writer.take();
 }
 
 /// Every variable of every table that has the record, but for those that this use leaves out.
 void check_same_variables(const Campaign& campaign, const ExperimentRecord& found,
-                          const ExperimentRecord& expected, RecordUse left_out) {
+                          const ExperimentRecord& expected, RowUse left_out) {
   for (const RecordTable& table : record_tables(campaign.study, forms_of(campaign))) {
-    const bool present = !table.has || table.has(expected);
-    REQUIRE((!table.has || table.has(found)) == present);
-    for (const RecordVariable& variable : table.variables)
-      if (present && variable.use != left_out && bits_of(variable, found) != bits_of(variable, expected))
-        FAIL_CHECK("experiment " << expected.draw.index << ": '" << table.group << "/" << variable.text.name
+    const bool present = table.covers(expected);
+    REQUIRE(table.covers(found) == present);
+    for (const RecordRow& row : table.rows)
+      if (present && row.use != left_out && bits_of(row, found) != bits_of(row, expected))
+        FAIL_CHECK("experiment " << expected.draw.index << ": '" << table.group << "/" << row.text.name
                                  << "' has changed");
   }
 }
@@ -69,7 +65,7 @@ TEST_CASE("record tables: every variable comes back out of bytes, bit for bit") 
     for (const ExperimentRecord& record : campaign.records) {
       const std::string bytes = format.to_bytes(record);
       const ExperimentRecord again = format.from_bytes(bytes);
-      check_same_variables(campaign, again, record, RecordUse::archive_only);
+      check_same_variables(campaign, again, record, RowUse::archive_only);
       CHECK(format.differences(again, record) == Names{});
       CHECK(format.to_bytes(again) == bytes);
     }
@@ -85,7 +81,7 @@ TEST_CASE("record tables: every variable comes back out of an archive, bit for b
     const Campaign read = read_archive(folder / "a.h5");
     REQUIRE(read.records.size() == campaign.records.size());
     for (std::size_t i = 0; i < read.records.size(); ++i)
-      check_same_variables(campaign, read.records[i], campaign.records[i], RecordUse::bytes_only);
+      check_same_variables(campaign, read.records[i], campaign.records[i], RowUse::bytes_only);
   }
 }
 
@@ -93,8 +89,8 @@ TEST_CASE("record tables: no two variables of a group have one name") {
   for (const Campaign& campaign : campaigns()) {
     std::set<std::string> names;
     for (const RecordTable& table : record_tables(campaign.study, forms_of(campaign)))
-      for (const RecordVariable& variable : table.variables)
-        CHECK(names.insert(table.group + "/" + variable.text.name).second);
+      for (const RecordRow& row : table.rows)
+        CHECK(names.insert(table.group + "/" + row.text.name).second);
   }
 }
 

@@ -24,11 +24,14 @@ TEST_CASE("variable text: a unit is common only when all variables have it") {
 }
 
 TEST_CASE("variable text: positions have the names of the variables as meanings, in one word each") {
-  const Flags flags = index_flags({{"y1", "", ""}, {"top temperature", "", ""}});
-  CHECK(flags.values == std::vector<int>{-1, 0, 1});
-  CHECK(flags.meanings == std::vector<std::string>{"none", "y1", "top_temperature"});
-  CHECK(flags.contains(-1));
-  CHECK_FALSE(flags.contains(2));
+  const NumberText text{"cv", "a CV", "1", "", index_words({{"y1", "", ""}, {"top temperature", "", ""}})};
+  const Attributes list = attributes<std::int8_t>(text);
+  REQUIRE(list.size() == 4);
+  CHECK(std::get<std::vector<std::int8_t>>(list[2].second) == std::vector<std::int8_t>{-1, 0, 1});
+  CHECK(std::get<std::string>(list[3].second) == "none y1 top_temperature");
+  CHECK(value_without_word(text, std::vector<int>{-1, 1}) == nullptr);
+  const std::vector<int> values{0, 2};
+  CHECK(value_without_word(text, values) == &values[1]);
 }
 
 TEST_CASE("utf8: a proper text comes back, any other one becomes proper") {

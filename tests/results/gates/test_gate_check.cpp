@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_report.hpp"
+#include "tests/analysis/made_up_record.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
@@ -28,7 +29,7 @@ Campaign good_campaign() {
       record.status = ExperimentStatus::infeasible;
     if (record.status != ExperimentStatus::ok)
       continue;
-    Diagnosis chain = record.chain();
+    Diagnosis chain = testing::diagnosis_of(record.chain());
     chain.impactful = true;
     chain.predicted_cv = record.draw.true_cv();
     chain.predicted_source = source_of(record.draw.kind);

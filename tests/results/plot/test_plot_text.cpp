@@ -8,6 +8,7 @@
 #include "results/plot/plot_text.hpp"
 #include "results/text/experiment_heading.hpp"
 #include "results/text/experiment_text.hpp"
+#include "tests/analysis/made_up_record.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
@@ -56,7 +57,7 @@ TEST_CASE("plot text: the text of a scenario names all its faults, and each CV i
   CHECK(heading[0] == "signals (UD): disturbance on level: gain 0.5, time constant 6 s, white 1;");
   CHECK(std::all_of(heading.begin(), heading.end(), [](const auto& line) { return line.size() <= 100; }));
   ExperimentRecord record = campaign.records[2];
-  Diagnosis chain = record.chain();
+  Diagnosis chain = testing::diagnosis_of(record.chain());
   for (CvDiagnosis& cv : chain.cvs)
     cv = {true, FaultSource::mpm, {}, {}, 0.0};
   testing::set_chain(study, record, chain);

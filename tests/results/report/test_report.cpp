@@ -18,6 +18,7 @@
 #include "results/report/report_answers.hpp"
 #include "results/report/report_sections.hpp"
 #include "results/text/experiment_text.hpp"
+#include "tests/analysis/made_up_record.hpp"
 #include "tests/results/campaign_sample.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -63,7 +64,7 @@ std::vector<std::string> section_ids(const Campaign& campaign) {
 void change_chain(Campaign& campaign,
                   const std::function<void(const ExperimentRecord&, Diagnosis&)>& change) {
   for (ExperimentRecord& record : campaign.records) {
-    Diagnosis chain = record.chain();
+    Diagnosis chain = testing::diagnosis_of(record.chain());
     if (chain.ivar.size() == 0)
       continue;
     change(record, chain);

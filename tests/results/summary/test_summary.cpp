@@ -13,6 +13,7 @@
 #include "results/summary/comparison.hpp"
 #include "results/summary/summary.hpp"
 #include "results/summary/sweep_document.hpp"
+#include "tests/analysis/made_up_record.hpp"
 #include "tests/results/campaign_sample.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
@@ -38,7 +39,7 @@ nlohmann::json json_of(const Campaign& campaign) {
 /// Lets the chain of each experiment that has an answer say something else.
 void change_chain(Campaign& campaign, const std::function<void(Diagnosis&)>& change) {
   for (ExperimentRecord& record : campaign.records) {
-    Diagnosis chain = record.chain();
+    Diagnosis chain = testing::diagnosis_of(record.chain());
     if (chain.ivar.size() == 0)
       continue;
     change(chain);
@@ -185,7 +186,7 @@ TEST_CASE("summary: the JSON form has the findings and the reported numbers") {
 
 TEST_CASE("summary: a study of named scenarios shows each with its truth and its verdict") {
   Campaign campaign = scenario_campaign();
-  Diagnosis chain = campaign.records[1].chain();
+  Diagnosis chain = testing::diagnosis_of(campaign.records[1].chain());
   std::vector<CvDiagnosis>& channels = chain.cvs;
   channels[0] = {true, FaultSource::mpm, {}, {}, 1.5};
   channels[1] = {false, FaultSource::none, {}, {}, 0.25};
@@ -243,7 +244,7 @@ TEST_CASE("summary: healthy experiments and bad tunings are counted, and their a
       *std::find_if(campaign.records.begin(), campaign.records.end(), [](const auto& record) {
         return record.draw.kind == ExperimentKind::healthy && record.status == ExperimentStatus::ok;
       });
-  Diagnosis chain = healthy.chain();
+  Diagnosis chain = testing::diagnosis_of(healthy.chain());
   chain.impactful = true;
   chain.predicted_cv = 1;
   chain.predicted_source = FaultSource::mpm;

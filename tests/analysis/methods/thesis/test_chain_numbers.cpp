@@ -164,7 +164,7 @@ TEST_CASE("the chain's numbers: a diagnosis comes back with every member as it w
     const Study study = short_study(named);
     const Diagnosis diagnosis = filled(study);
     const AssessmentRecord record = testing::chain_says(testing::form_of(study, "botelho"), diagnosis);
-    const Diagnosis again = diagnosis_of(record);
+    const Diagnosis again = testing::diagnosis_of(record);
     CHECK(content(again) == content(diagnosis));
     CHECK(again.cvs.size() == diagnosis.cvs.size());
     if (named)
@@ -176,7 +176,8 @@ TEST_CASE("the chain's numbers: what has no value has none again") {
   const Study study = short_study(false);
   Diagnosis diagnosis;
   diagnosis.ivar = diagnosis.ivar_diag = Eigen::VectorXd::Ones(study.cv_count());
-  const Diagnosis again = diagnosis_of(testing::chain_says(testing::form_of(study, "botelho"), diagnosis));
+  const Diagnosis again =
+      testing::diagnosis_of(testing::chain_says(testing::form_of(study, "botelho"), diagnosis));
   CHECK(std::isnan(again.alone.dominance_mpm));
   CHECK(std::isnan(again.indicator.i_mpm));
   CHECK(again.predicted_cv == 0);  // no score is larger than that of the first
@@ -185,12 +186,39 @@ TEST_CASE("the chain's numbers: what has no value has none again") {
 }
 
 TEST_CASE("the chain's numbers: without a verdict there is no diagnosis") {
-  AssessmentRecord record =
+  const AssessmentRecord record =
       kept(testing::form_of(short_study(true), "botelho"), Assessment::failed("a reason"));
-  CHECK(diagnosis_of(record).ivar.size() == 0);
-  CHECK(diagnosis_of(record).cvs.empty());
-  CHECK_FALSE(diagnosis_of(record).impactful);
-  CHECK(diagnosis_of(record).predicted_cv == -1);
+  CHECK(std::isnan(total_simulation_error(record)));
+  CHECK(std::isnan(cv_diagnosis(record, 1).sse));
+  CHECK_FALSE(cv_diagnosis(record, 1).flagged);
+  CHECK(record.predicted_cv == -1);
+}
+
+TEST_CASE("the chain's numbers: the simulation error of a loop is the sum of those of its CVs") {
+  const Study study = short_study(true);
+  const Diagnosis diagnosis = filled(study);
+  double sum = 0.0;
+  for (const CvDiagnosis& cv : diagnosis.cvs)
+    sum += cv.sse;
+  CHECK(total_simulation_error(testing::chain_says(testing::form_of(study, "botelho"), diagnosis)) == sum);
+}
+
+TEST_CASE("the chain's numbers: the rows of a study put back all that is in its diagnosis but the verdicts") {
+  for (const bool named : {false, true}) {
+    const Study study = short_study(named);
+    const Diagnosis diagnosis = filled(study);
+    Diagnosis again;
+    for (const Row<Diagnosis>& row : diagnosis_rows(study))
+      put_numbers(row, again, numbers_of(row, diagnosis).data());
+    again.impactful = diagnosis.impactful;
+    again.predicted_cv = diagnosis.predicted_cv;
+    again.predicted_source = diagnosis.predicted_source;
+    for (std::size_t cv = 0; cv < again.cvs.size(); ++cv) {
+      again.cvs[cv].flagged = diagnosis.cvs[cv].flagged;
+      again.cvs[cv].source = diagnosis.cvs[cv].source;
+    }
+    CHECK(content(again) == content(diagnosis));
+  }
 }
 
 TEST_CASE("the chain's numbers: the list has each number of the description, once in each of its places") {
@@ -216,16 +244,16 @@ TEST_CASE("the chain's numbers: the list has each number of the description, onc
 }
 
 TEST_CASE("the chain's numbers: one of a named scenario has the name and the words of its indicator") {
-  std::map<std::string, AssessmentNumberInfo> infos;
+  std::map<std::string, NumberText> infos;
   for (const AssessmentNumberInfo& info : scenario_number_infos())
     infos[info.name] = info;
-  for (const auto& column : acf_columns()) {
-    REQUIRE(infos.contains("cv_" + column.name));
-    CHECK(infos["cv_" + column.name].words == column.words);
-    CHECK(infos["cv_" + column.name].meaning == column.meaning);
+  for (const auto& row : acf_rows()) {
+    REQUIRE(infos.contains("cv_" + row.text.name));
+    CHECK(infos["cv_" + row.text.name].words.size() == row.text.words.size());
+    CHECK(infos["cv_" + row.text.name].meaning == row.text.meaning);
   }
-  for (const auto& column : distribution_columns())
-    CHECK(infos.contains("cv_" + column.name));
+  for (const auto& row : distribution_rows())
+    CHECK(infos.contains("cv_" + row.text.name));
 }
 
 }  // namespace mpm
