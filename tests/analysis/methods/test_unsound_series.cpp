@@ -183,7 +183,7 @@ TEST_CASE("every method answers a sound loop of the study of this test") {
     const Setting setting(model);
     const AssessmentContext context = setting.context(setting.benchmark());
     CHECK((context.learnt != nullptr) == (model == AssessmentModel::benchmark));
-    for (const std::string& name : assessment_method_names()) {
+    for (const std::string& name : shipped_methods().names()) {
       INFO(name);
       const Assessment said = Assessor(assessment_method(name), context).assess(setting.loop);
       INFO(said.reason);
@@ -196,7 +196,7 @@ TEST_CASE("every method answers a sound loop of the study of this test") {
 TEST_CASE("no number in a loop makes a method crash, or answer without a number") {
   const Setting setting(AssessmentModel::nominal);
   const AssessmentContext context = setting.context(setting.benchmark());
-  const AssessmentForms forms = assessment_forms(setting.study, assessment_method_names());
+  const AssessmentForms forms = assessment_forms(setting.study, shipped_methods().names());
   for (const auto& form : forms) {
     Assessor assessor(assessment_method(form->method().name), context);
     for (const Spoiled& each : spoiled(setting.loop)) {
@@ -214,7 +214,7 @@ TEST_CASE("no number in a benchmark makes a method crash, or answer without a nu
   for (const Spoiled& each : spoiled(setting.benchmark())) {
     INFO(each.name);
     const AssessmentContext context = setting.context(each.loop);
-    for (const std::string& name : assessment_method_names()) {
+    for (const std::string& name : shipped_methods().names()) {
       INFO(name);
       Assessor assessor(assessment_method(name), context);
       check_answer(assessor.assess(setting.loop));
@@ -240,7 +240,7 @@ TEST_CASE("a value out of all proportion is named, in the loop and in the benchm
 TEST_CASE("a benchmark whose errors of the model cannot be learnt fails the verdict, with the reason") {
   const Setting setting(AssessmentModel::benchmark);
   AssessmentContext context = setting.context(setting.benchmark());
-  context.learnt = nullptr;
+  context.correction = nullptr;
   context.not_learnt = "no likelihood";
   const Assessment said = Assessor(assessment_method("likelihood"), context).assess(setting.loop);
   CHECK(said.status == AssessmentStatus::failed);
