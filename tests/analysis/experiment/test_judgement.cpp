@@ -291,6 +291,7 @@ std::vector<ExperimentRecord> random_records(std::uint64_t seed, int count) {
   return records;
 }
 
+template <class Question>
 void check_counts(const std::vector<ExperimentRecord>& records, ExperimentKind kind, const Question& question,
                   const Rate& rate) {
   std::int64_t right = 0, asked = 0;

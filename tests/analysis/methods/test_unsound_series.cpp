@@ -182,7 +182,7 @@ TEST_CASE("every method answers a sound loop of the study of this test") {
   for (const AssessmentModel model : {AssessmentModel::nominal, AssessmentModel::benchmark}) {
     const Setting setting(model);
     const AssessmentContext context = setting.context(setting.benchmark());
-    CHECK((context.learnt != nullptr) == (model == AssessmentModel::benchmark));
+    CHECK((context.correction != nullptr) == (model == AssessmentModel::benchmark));
     for (const std::string& name : shipped_methods().names()) {
       INFO(name);
       const Assessment said = Assessor(assessment_method(name), context).assess(setting.loop);
