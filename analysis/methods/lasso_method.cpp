@@ -12,7 +12,7 @@
 #include "analysis/methods/channel_regressors.hpp"
 #include "analysis/methods/mismatch_profile.hpp"
 #include "analysis/methods/prewhitened_groups.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "plants/non_finite.hpp"
 
 namespace mpm {

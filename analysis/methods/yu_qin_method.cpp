@@ -8,7 +8,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/variability_comparison.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "plants/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
