@@ -10,7 +10,6 @@
 
 #include "analysis/sensitivity/relative_gain.hpp"
 #include "analysis/statistics/best_candidate.hpp"
-#include "analysis/statistics/best_of.hpp"
 #include "base/error.hpp"
 
 namespace mpm {

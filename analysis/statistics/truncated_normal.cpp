@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "analysis/statistics/best_candidate.hpp"
-#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {

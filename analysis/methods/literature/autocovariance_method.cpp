@@ -17,7 +17,6 @@
 #include "analysis/methods/literature/loop_autocovariance.hpp"
 #include "analysis/methods/literature/mismatch_search.hpp"
 #include "analysis/statistics/best_candidate.hpp"
-#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/toml/option_keys.hpp"

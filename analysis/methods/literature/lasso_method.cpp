@@ -13,7 +13,6 @@
 #include "analysis/methods/literature/mismatch_profile.hpp"
 #include "analysis/methods/literature/prewhitened_groups.hpp"
 #include "analysis/statistics/best_candidate.hpp"
-#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {

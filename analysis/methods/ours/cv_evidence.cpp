@@ -8,7 +8,6 @@
 
 #include "analysis/methods/ours/growing_mismatch.hpp"
 #include "analysis/statistics/best_candidate.hpp"
-#include "analysis/statistics/best_of.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {

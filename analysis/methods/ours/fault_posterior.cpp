@@ -10,7 +10,6 @@
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/sticky_valve_likelihood.hpp"
 #include "analysis/statistics/best_candidate.hpp"
-#include "analysis/statistics/best_of.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"

@@ -10,7 +10,6 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/shared/error_regression.hpp"
 #include "analysis/statistics/best_candidate.hpp"
-#include "analysis/statistics/best_of.hpp"
 #include "analysis/statistics/holm.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
