@@ -65,8 +65,8 @@ OrderCandidate tried(const Eigen::Ref<const Eigen::VectorXd>& y, const Eigen::Re
   return candidate;
 }
 
-std::optional<std::size_t> best_candidate(const std::vector<OrderCandidate>& candidates,
-                                          const OrderSelectionOptions& options) {
+std::optional<std::size_t> best_order_candidate(const std::vector<OrderCandidate>& candidates,
+                                                const OrderSelectionOptions& options) {
   const auto eligible = [&options](const OrderCandidate& candidate) {
     // A loss of 0 has the logarithm -infinity, which is the best there is.
     return is_usable(candidate.identification.status) && !std::isnan(score(candidate, options).value);
@@ -138,7 +138,7 @@ OrderSelection select_order(const Eigen::Ref<const Eigen::VectorXd>& y,
   OrderSelection selection;
   for (const ModelOrder& order : candidates)
     selection.candidates.push_back(tried(y, u, order, estimation, fit));
-  selection.best = best_candidate(selection.candidates, options);
+  selection.best = best_order_candidate(selection.candidates, options);
   return selection;
 }
 

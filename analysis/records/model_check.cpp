@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/records/channel_error_fit.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 
 namespace mpm {
 namespace {

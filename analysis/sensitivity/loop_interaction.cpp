@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/sensitivity/relative_gain.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
@@ -112,7 +112,7 @@ LoopInteraction loop_interaction(const Study& study, const OperatingPoint& point
     const double frequency = refined_maximum(result.frequency, at, weight);
     result.peaks.push_back({frequency, weight(frequency)});
   }
-  const auto largest = best_of(result.peaks, &LoopInteraction::Peak::rpn);
+  const auto largest = best_candidate(result.peaks, &LoopInteraction::Peak::rpn);
   if (largest == result.peaks.end())
     return {};
   result.rpn_frequency = largest->frequency;

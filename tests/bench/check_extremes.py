@@ -109,7 +109,7 @@ def check_every_command(bench, name, text):
     for index in range(3):
         assert "bit-identical" in bench.run("replay", archive, index).stdout
     for words in [("summary", archive), ("report", archive, "-o", f"{name}.html"),
-                  ("plot", archive, "--index", 0, "-o", f"{name}.svg"), ("export", archive, "--table", "experiments"),
+                  ("plot", archive, 0, "-o", f"{name}.svg"), ("export", archive, "--table", "experiments"),
                   ("compare", archive, "--methods", "likelihood,sse", "-o", f"{name}-compared.h5", "--quiet")]:
         bench.run(*words)
 

@@ -14,7 +14,7 @@
 #include "analysis/methods/literature/healthy_windows.hpp"
 #include "analysis/methods/literature/model_comparison.hpp"
 #include "analysis/methods/literature/prewhitened_groups.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/toml/number_rule.hpp"
 #include "scenarios/toml/option_keys.hpp"

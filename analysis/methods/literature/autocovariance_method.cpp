@@ -16,7 +16,7 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/loop_autocovariance.hpp"
 #include "analysis/methods/literature/mismatch_search.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -301,8 +301,8 @@ class Autocovariance final : public AssessmentMethod {
     fits.resize(std::min(fits.size(), kRefined));
     for (FittedFamily& fit : fits)
       fit = refined(fit, kSecondStep * grid_step(fit), c, distance);
-    return *required_best_of("distances of the mismatches of a loop", fits,
-                             [](const FittedFamily& fit) { return -fit.distance; });
+    return *required_best_candidate("distances of the mismatches of a loop", fits,
+                                    [](const FittedFamily& fit) { return -fit.distance; });
   }
 
   void explain(const Eigen::VectorXd& c, Assessment& assessment) {

@@ -7,7 +7,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/badwe2009.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "analysis/identification/nested_least_squares.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "base/error.hpp"
 
@@ -123,7 +124,7 @@ void fit_cvs(const std::vector<Eigen::Index>& cvs, const LagRegressors& regresso
         beginning ? validation_losses(regressors, targets, side, *beginning, n - estimation, options)
                   : scores(regressors, targets, side, fit, options);
     const auto best =
-        required_best_of("criteria of high-order ARX models", score, std::negate<>()) - score.begin();
+        required_best_candidate("criteria of high-order ARX models", score, std::negate<>()) - score.begin();
     const Eigen::Index order = options.orders[static_cast<std::size_t>(best)];
     const Eigen::Index columns = regressors.columns(order);
     result.orders[static_cast<std::size_t>(cvs[c])] = order;

@@ -12,7 +12,7 @@
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/literature/mismatch_profile.hpp"
 #include "analysis/methods/literature/prewhitened_groups.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {

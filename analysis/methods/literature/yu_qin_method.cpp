@@ -8,7 +8,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/variability_comparison.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "base/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
 

@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "analysis/methods/ours/growing_mismatch.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -373,7 +373,7 @@ class RecordLikelihood {
     std::vector<double> fits;
     for (const MismatchEvidence& each : first)
       fits.push_back(each.best_log_likelihood);
-    const auto strongest = best_of(so_far.mismatch_alone, &MismatchEvidence::best_log_likelihood);
+    const auto strongest = best_candidate(so_far.mismatch_alone, &MismatchEvidence::best_log_likelihood);
     if (strongest != so_far.mismatch_alone.end() &&
         strongest->best_log_likelihood > so_far.healthy + kFaint) {
       const auto place = static_cast<std::size_t>(strongest - so_far.mismatch_alone.begin());

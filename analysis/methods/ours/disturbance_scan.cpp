@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 
 namespace mpm {
@@ -171,12 +171,13 @@ double ScaleLikelihood::precision(double squares) const {
 }
 
 Eigen::Index WeighedModels::best() const {
-  return required_best_of("likelihoods of the disturbances of a CV", log_likelihood) - log_likelihood.begin();
+  return required_best_candidate("likelihoods of the disturbances of a CV", log_likelihood) -
+         log_likelihood.begin();
 }
 
 double WeighedModels::log_evidence() const {
   const Eigen::ArrayXd posterior = log_posterior();
-  const double largest = *required_best_of("likelihoods of the disturbances of a CV", posterior);
+  const double largest = *required_best_candidate("likelihoods of the disturbances of a CV", posterior);
   return largest + std::log((posterior - largest).exp().sum());
 }
 
@@ -186,7 +187,7 @@ WeighedModels WeighedModels::main_ones() const {
 
 WeighedModels WeighedModels::within(double margin) const {
   const Eigen::ArrayXd posterior = log_posterior();
-  const double least = *required_best_of("likelihoods of the noises of a CV", posterior) - margin;
+  const double least = *required_best_candidate("likelihoods of the noises of a CV", posterior) - margin;
   std::vector<Eigen::Index> places;
   for (Eigen::Index i = 0; i < posterior.size(); ++i)
     if (posterior(i) >= least)

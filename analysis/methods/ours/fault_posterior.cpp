@@ -9,7 +9,7 @@
 #include "analysis/methods/ours/input_disturbance.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/sticky_valve_likelihood.hpp"
-#include "analysis/statistics/best_of.hpp"
+#include "analysis/statistics/best_candidate.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
@@ -379,8 +379,8 @@ class FaultPosterior final : public AssessmentMethod {
     if (!assessment.flagged || (source != FaultSource::mpm && source != FaultSource::mpm_ud))
       return;
     const auto& mismatches = mismatches_of_source(evidence, source);
-    const auto likeliest = required_best_of("likelihoods of the mismatches of a CV", mismatches,
-                                            &MismatchEvidence::log_evidence);
+    const auto likeliest = required_best_candidate("likelihoods of the mismatches of a CV", mismatches,
+                                                   &MismatchEvidence::log_evidence);
     const SizePrior& named =
         priors_.cvs[cv].mismatches[static_cast<std::size_t>(likeliest - mismatches.begin())];
     assessment.flagged_channels.push_back(named.channel);

@@ -154,7 +154,8 @@ TEST_CASE("interaction: no relative gains without as many MVs as active CVs, not
   sensitivity.step_response.pop_back();
   CHECK(loop_interaction(study, {{}, {}, {}, {0}}, sensitivity).mvs == std::vector<Eigen::Index>{1});
   Study no_inverse = study;
-  no_inverse.plant.G(1, 0) = no_inverse.plant.G(1, 1) = TransferFunction::zero();  // nothing moves the second CV
+  no_inverse.plant.G(1, 0) = no_inverse.plant.G(1, 1) =
+      TransferFunction::zero();  // nothing moves the second CV
   const LoopInteraction singular = loop_interaction(no_inverse, {}, first_order_loops(2, 0.9, 100));
   CHECK(singular.mvs.empty());
   CHECK(singular.relative_gain.empty());

@@ -16,7 +16,7 @@ namespace mpm {
 /// The place of the candidate with the largest `value`, of several the first: an iterator into `candidates`.
 /// NaN and -infinity make no candidate; the end where none is left. For the smallest value negate it.
 template <class Candidates, class Value = std::identity>
-auto best_of(const Candidates& candidates, Value value = {}) {
+auto best_candidate(const Candidates& candidates, Value value = {}) {
   const auto end = std::end(candidates);
   auto best = end;
   double largest = -kInfinity;
@@ -31,8 +31,8 @@ auto best_of(const Candidates& candidates, Value value = {}) {
 /// The same where the answer needs one. Throws InputError, by the name of the values, where no candidate is
 /// left.
 template <class Candidates, class Value = std::identity>
-auto required_best_of(const std::string& values, const Candidates& candidates, Value value = {}) {
-  const auto best = best_of(candidates, value);
+auto required_best_candidate(const std::string& values, const Candidates& candidates, Value value = {}) {
+  const auto best = best_candidate(candidates, value);
   if (best == std::end(candidates))
     throw InputError(values, "no number", "one or more");
   return best;
