@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/unfit_option.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
@@ -122,6 +123,8 @@ Assessment Assessor::assess_seen(const AssessedLoop& loop) {
     if (assessment.flagged && locates_cvs_ && !assessment.worst_cv())
       return Assessment::failed("it flags the loop and names no CV");
     return assessment;
+  } catch (const UnfitOption&) {
+    throw;
   } catch (const InputError& error) {
     return Assessment::failed(error.what());
   }
@@ -132,6 +135,8 @@ void Assessor::learn() {
     if (relative_ && seen_->benchmark)
       seen_->benchmark = context_.correction->corrected(*seen_->benchmark, benchmark_);
     method_ = make_(seen());
+  } catch (const UnfitOption&) {
+    throw;
   } catch (const InputError& error) {
     unusable_ = error.what();
     throw;

@@ -221,10 +221,10 @@ def check_everything_as_verdicts(outside):
             ratio = squares_of_loop[:, samples].mean(axis=1) / squares.mean(axis=1)
             lines.append(",".join(map(str, [loop, part, int((ratio > threshold).any()), repr(float(ratio.max())),
                                             *(ratio > threshold).astype(int), *map(repr, map(float, ratio))])))
-    verdicts = outside.folder / "all.csv"
+    verdicts = outside.folder / "whole.csv"
     verdicts.write_text("\n".join(lines) + "\n", encoding="utf-8")
     answer = outside.methods(archive, "--verdicts", verdicts)
-    mine, theirs = answer["all"], answer["sse"]
+    mine, theirs = answer["whole"], answer["sse"]
     assert mine["rates"] == theirs["rates"] and mine["rates"]["power_05"]["total"] > 0, (mine["rates"], theirs["rates"])
     assert mine["estimates"] == theirs["estimates"] and mine["estimates"]["detection_delay"]["count"] > 0
     assert mine["unanswered"] == theirs["unanswered"] == {}

@@ -10,6 +10,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/model_quality.hpp"
+#include "analysis/methods/unfit_option.hpp"
 #include "base/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
@@ -94,9 +95,9 @@ Eigen::VectorXd weights_of(const MpcOptions& controller) {
 /// An autoregression of this order needs three times as many samples (autoregressive_noise()).
 void require_long_benchmark(Eigen::Index samples, int order) {
   if (samples < 3 * order)
-    throw InputError("assessment.sun.noise_order",
-                     fmt::format("{} for a benchmark of {} samples", order, samples),
-                     fmt::format("at most {}, a third of them", samples / 3));
+    throw UnfitOption("assessment.sun.noise_order",
+                      fmt::format("{} for a benchmark of {} samples", order, samples),
+                      fmt::format("at most {}, a third of them", samples / 3));
 }
 
 /// G_d0 of each CV; none when it should come from a benchmark that is not known.

@@ -8,6 +8,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/variability_comparison.hpp"
+#include "analysis/methods/unfit_option.hpp"
 #include "analysis/statistics/best_candidate.hpp"
 #include "base/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -61,9 +62,9 @@ class YuQin final : public AssessmentMethod {
       : options_(options.comparison), first_(options.first_sample), benchmark_(*context.benchmark) {
     options_.validate();
     if (first_ + 2 > benchmark_.samples())
-      throw InputError("assessment.yu-qin.first_sample", fmt::format("{}", first_),
-                       fmt::format("{} or less: the benchmark has {} samples", benchmark_.samples() - 2,
-                                   benchmark_.samples()));
+      throw UnfitOption("assessment.yu-qin.first_sample", fmt::format("{}", first_),
+                        fmt::format("{} or less: the benchmark has {} samples", benchmark_.samples() - 2,
+                                    benchmark_.samples()));
   }
 
   Assessment assess(const AssessedLoop& loop) override {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "base/error.hpp"
+
+namespace mpm {
+
+/// An option of a method that does not fit the study or its benchmark. It is wrong input, and ends the
+/// command; any other InputError of a method that learns or assesses is a verdict that failed.
+class UnfitOption : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+}  // namespace mpm
