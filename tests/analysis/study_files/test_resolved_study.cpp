@@ -104,7 +104,8 @@ std::string random_study_text() {
     text += ", " + std::to_string(0.25 + 0.1 * i) + (i % 30 == 0 ? "\n" : "");
   text +=
       "]\n[monitoring]\nwindow = 30\nstride = 7\n[calibration]\nhealthy = 50\nseed = 8\n"
-      "[data]\ntime = 'stamp'\ndate = 'day'\ntime_format = '%H:%M'\ntime_zone = 'Europe/Berlin'\nskip = [2, "
+      "[data]\ntime = 'stamp'\ndate = 'day'\ntime_format = '%H:%M'\ntime_zone = 'Europe/Berlin'\nlanguage = "
+      "'it'\nskip = [2, "
       "4]\n"
       "tag_column = 'tag'\nvalue_column = 'value'\nstored_on_change = ['hot']\ntime_unit = 'h'\ndate_order = "
       "'day-month-year'\nseparator = ';'\ndecimal = "

@@ -10,6 +10,7 @@
 
 #include "analysis/study_files/study_file.hpp"
 #include "base/error.hpp"
+#include "base/system/surroundings.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
