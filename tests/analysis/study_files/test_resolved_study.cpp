@@ -405,8 +405,12 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
       INFO("[" << name << "] " << key);
       CHECK(written.count({name, key}) != without_value.count({name, key}));
     }
-  for (const char* key : {"weight_convention", "slack", "target_violation_cost", "solver_time_limit"})
+  for (const char* key : {"weight_convention", "slack", "target_violation_cost"})
     CHECK(written.count({"controller", key}) == 1);
+  CHECK(written.count({"controller", "solver_time_limit"}) == 0);  // digests of finished boards have none
+  const std::string limited =
+      replaced(small_study(), "control_horizon = 5", "control_horizon = 5\nsolver_time_limit = 4");
+  CHECK_THAT(resolved_study(parse_study(limited, "s.toml")), Catch::Contains("\nsolver_time_limit = 4.0\n"));
 }
 
 TEST_CASE("a resolved study begins as the document of the study file does", "[resolved_study]") {
