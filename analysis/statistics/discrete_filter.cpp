@@ -91,6 +91,8 @@ double root_radius(const Eigen::Ref<const Eigen::VectorXd>& a) {
 }
 
 bool has_roots_within(const Eigen::Ref<const Eigen::VectorXd>& a, double radius) {
+  if (!a.allFinite())
+    return false;
   require_monic(a);
   Eigen::VectorXd scaled = a;  // the roots of z are those of a over `radius`
   double power = 1.0;

@@ -345,10 +345,16 @@ OptionKeys controller_keys(Study& study) {
                       "price of one unit of steady-state violation of a soft limit, in multiples of the "
                       "largest `cost`. Open: (6.19) has no solution if no target keeps the limits",
                       "1"),
-          key::number("solver_time_limit", options.solver_time_limit, NumberRule::positive(),
+          // Not written when it is left out: finished boards have the digests of studies without it.
+          key::option("solver_time_limit", "number",
                       "processor time that Ipopt may take for one problem, where it answers in place of the "
                       "active-set method or alone; a loop that needs more is `failed`",
-                      "s"),
+                      "s")
+              .otherwise(fmt::format("{:g}", options.solver_time_limit))
+              .allow("> 0")
+              .read([&options](const TomlTable& table, const std::string& key) {
+                options.solver_time_limit = read_number(table, key, NumberRule::positive());
+              }),
           variable_tables<MvOptions>("mv", study.plant.mvs, take_mv, "one table for each MV, by name"),
           variable_tables<CvOptions>("cv", study.plant.cvs, take_cv, "one table for each CV, by name"),
           variable_tables<AnalyserTiming>("md", study.plant.mds, take_md,

@@ -296,8 +296,16 @@ void write_faults(TomlDraft& document, const Guess& guess) {
   disturbance.set("impact", impact);
 }
 
-void write_analysis(TomlDraft& document, const Guess& guess) {
+void write_analysis(TomlDraft& document, const StudySketch& sketch, const Guess& guess) {
   TomlDraft& sensitivity = below(document, "sensitivity", "sensitivity");
+  std::vector<std::string> levels;  // where there is nothing else, nothing comes to rest at a limit
+  for (std::size_t cv = 0; cv < sketch.ranges.size(); ++cv)
+    if (sketch.ranges[cv] && sketch.plant.G.is_integrating(static_cast<Eigen::Index>(cv)))
+      levels.push_back(sketch.plant.cvs[cv].name);
+  if (levels.size() == sketch.ranges.size()) {
+    levels.resize(std::min(levels.size(), sketch.plant.mvs.size()));
+    sensitivity.set("active_cvs", levels);
+  }
   sensitivity.set("samples", std::max(100, 3 * guess.prediction_horizon));
   sensitivity.set("step_size", rounded(0.1 * guess.size.minCoeff()));
   below(document, "methods", "methods").set("names", std::vector<std::string>{"botelho", "mpmbench"});
@@ -328,7 +336,7 @@ std::string study_template(const StudySketch& sketch) {
   write_controller(document, sketch, guess);
   write_simulation(document, sketch, guess);
   write_faults(document, guess);
-  write_analysis(document, guess);
+  write_analysis(document, sketch, guess);
   return kHead + with_cost_notes(document.text());
 }
 

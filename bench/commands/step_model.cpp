@@ -235,6 +235,8 @@ std::string StepModel::report() const {
 StepModel read_step_model(const std::string& file, std::optional<double> interval) {
   RecordColumns columns = load_record_columns(file, DataOptions());
   const double between = step_interval_of(columns, interval);
+  if (columns.rows() == 0)
+    throw InputError(file, "no row behind time 0", "coefficients 1, 2, ... intervals after the step");
   StepModel model{file, between, {}};
   for (const ChannelColumn& each : channel_columns(columns, columns.find(kTimeColumn), file)) {
     const Eigen::VectorXd coefficients = numbers_in(columns, each.column);

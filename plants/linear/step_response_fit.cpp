@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -263,11 +264,13 @@ std::optional<TransferFunction> with_fewest_digits(const TransferFunction& chann
   constexpr int kMostDigits = 16;  // 17 are the number itself
   for (int digits = 1; digits <= kMostDigits; ++digits) {
     const auto shortened = [digits](double value) {
-      return std::stod(fmt::format("{:.{}g}", value, digits));
+      return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
     };
+    const bool is_dead =
+        channel.dead_time() > 0.5 * std::pow(10.0, -digits) * interval;  // no rest of a search
     const TransferFunction shorter(channel.numerator().unaryExpr(shortened),
                                    channel.denominator().unaryExpr(shortened),
-                                   shortened(channel.dead_time()));
+                                   is_dead ? shortened(channel.dead_time()) : 0.0);
     const Eigen::VectorXd response =
         step_response(TransferMatrix{{shorter}}, interval, coefficients.size()).front().transpose();
     if (((response - coefficients).cwiseAbs().array() <= tolerances.array()).all())

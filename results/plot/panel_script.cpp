@@ -161,7 +161,7 @@ void PanelScript::upright_band(double lower, double upper) {
 }
 
 void PanelScript::field(double x, double y, std::string_view colour, double depth, const std::string& label) {
-  depth = std::isfinite(depth) ? std::clamp(depth, 0.0, 1.0) : 0.0;
+  depth = std::isfinite(depth) ? std::clamp(depth, 0.0, 1.0) + 0.0 : 0.0;  // gnuplot knows no -0
   see(x_, x_extent_, x);
   see(y_, y_extent_, y);
   settings_ += fmt::format(

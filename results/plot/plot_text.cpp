@@ -80,7 +80,7 @@ std::string as_label(std::string_view text) {
 std::string gnuplot_label(std::string_view label) {
   std::string quoted = "'";
   read_label(
-      label,
+      shown_text(label),  // a line break would end the command
       [&](std::string_view text) {
         if (kMarkup.find(text[0]) != std::string_view::npos)
           quoted += '\\';

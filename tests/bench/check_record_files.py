@@ -34,11 +34,11 @@ class Files(Bench):
                           code=code)
         return json.loads(result.stdout) if code == 0 else result.stderr
 
-    def write(self, name, units="minutes since 2024-03-01 12:00:00", start=0.0, change=None):
+    def write(self, name, units="minutes since 2024-03-01 12:00:00", start=0.0, change=None, factor=1):
         """The rows as somebody else would write them: packed integers, floats, texts of fixed length."""
         path = self.folder / name
         with h5py.File(path, "w") as file:
-            time = file.create_dataset("time", data=start + numpy.array([float(r["time"]) for r in self.rows]))
+            time = file.create_dataset("time", data=start + factor * numpy.array([float(r["time"]) for r in self.rows]))
             time.make_scale("time")
             time.attrs["units"] = units
             for column in COLUMNS[1:]:
@@ -74,17 +74,21 @@ def check_netcdf(files, right):
     assert unmarked["methods"][0]["cvs"][1]["ivar"] > 100, "a gap that nobody marks is a number"
     zone = files.assess(files.write("z.nc", units="minutes since 2024-03-01T12:00:00+02:00"))
     assert zone["from"] == "2024-03-01 10:00:00", zone["from"]
+    for units, factor in (("microseconds", 60e6), ("us", 60e6), ("Nanoseconds", 60e9), ("ms", 60e3), ("seconds", 60)):
+        scaled = files.assess(files.write("u.nc", f"{units} since 2024-3-1 12:0:0.0", factor=factor))
+        assert scaled["from"] == "2024-03-01 12:00:00" and scaled["methods"] == zone["methods"], (units, scaled["from"])
 
     def refused(change, *sentences, units="minutes since 2024-03-01", data=""):
         message = files.assess(files.write("r.nc", units=units, change=change), data, code=2)
         for sentence in sentences:
             assert sentence in message, (sentence, message)
-    refused(None, "'months since 2024-03-01'", "milliseconds to days", units="months since 2024-03-01")
+    refused(None, "'months since 2024-03-01'", "nanoseconds to days", units="months since 2024-03-01")
     refused(lambda f: f["time"].attrs.update({"calendar": "360_day"}), "'360_day'", "gregorian")
     refused(lambda f: f.pop("time"), "no variable of the time", "data.time")
     refused(lambda f: f.move("xD", "AI101"), "no column 'xD'", "AI101")
     refused(None, "no variable 'stamp'", data="time = 'stamp'")
     check_foreign(files, refused)
+    check_other_formats(files, refused)
     stream = random.Random(5)
     whole = files.write("whole.nc").read_bytes()
     for share in (0.3, 0.9):  # cut off: a sentence, no crash
@@ -149,6 +153,34 @@ def check_foreign(files, refused):
     refused(huge, "'/xD'", "too many values")
 
 
+def check_other_formats(files, refused):
+    """What is none of the formats is refused with its name and what to do; a variable that is no column, with the reason."""
+    for begin, name, remedy in ((b"CDF\x01", "a netCDF-3 file", "nccopy -k nc4"), (b"CDF\x05", "a netCDF-3 file", "nccopy"),
+                                (b"MATLAB 5.0 MAT-file, Platform: GLNXA64", "MATLAB 5 to 7.2", "-v7.3"),
+                                (b"PK\x03\x04", "a ZIP archive", "CSV UTF-8"), (b"\xd0\xcf\x11\xe0", "old Excel", "CSV UTF-8"),
+                                (b"\x1f\x8b", "gzip", "unpack"), (b"PAR1", "Parquet", "DataFrame")):
+        (files.folder / "other").write_bytes(begin + bytes(1000))
+        message = files.assess("other", code=2)
+        assert f"other: found " in message and name in message and remedy in message, message
+
+    def turned(file, shape=None, values=None, dims=()):
+        del file["xD"]
+        dataset = file.create_dataset("xD", data=values if values is not None else numpy.zeros(shape))
+        for place in dims:
+            dataset.dims[place].attach_scale(file["time"])
+    count = len(files.rows)
+    for change, reason in (
+            (lambda f: turned(f, (count, 2), dims=[0]), "its last dimension is not that of the time"),
+            (lambda f: turned(f, (count,)), "its last dimension is not that of the time"),
+            (lambda f: turned(f, (1, 1, 2, count), dims=[3]), "more dimensions than those of one loop"),
+            (lambda f: turned(f, values=numpy.zeros(count, complex), dims=[0]), "neither real numbers nor texts"),
+            (lambda f: turned(f, values=numpy.zeros(count, bool), dims=[0]), "neither real numbers nor texts")):
+        refused(change, "found 'xD', which is no column: ", reason)
+    refused(lambda f: [f.pop(name) for name in list(f) if name not in ("time", "height")],
+            "found no variables along the time, but 'height' (its last dimension is not that of the time)")
+    refused(lambda f: f["time"].attrs.update({"units": [1.0, 2.0]}), "attribute '/time/units': found 2 values; allowed: one")
+
+
 def check_written(files):
     """CSV of others with quotes: read row by row, or refused by line; values that nobody has measured are missing."""
     text = text_of(files.rows).splitlines()
@@ -169,6 +201,12 @@ def check_written(files):
     assert verdict(answer) == verdict(clean), answer["methods"][0]
     assert any("3 values cannot be measurements" in warning for warning in answer["warnings"]), answer["warnings"]
     assert not any("cannot be measurements" in warning for warning in clean["warnings"]), clean["warnings"]
+    # So is a round value that comes again: two of 1000 in a CV of +-1.
+    rounds = [dict(row, xD=1000.0 if k in (61, 200) else row["xD"]) for k, row in enumerate(files.rows)]
+    (files.folder / "rounds.csv").write_text(text_of(rounds))
+    answer = files.assess("rounds.csv")
+    assert verdict(answer) == verdict(clean), answer["methods"][0]
+    assert any("2 values cannot be measurements" in warning for warning in answer["warnings"]), answer["warnings"]
     # The same plant with a setpoint of xB, which the record does not have.
     zones, soft = files.text, "slack_weight = 100.0\nsoft = [-1.0, 0.0]"
     assert soft in zones

@@ -46,6 +46,11 @@ def midnight_as_24(time):
     return [(time - datetime.timedelta(days=1)).strftime("%Y-%m-%d 24:00")]
 
 
+def in_words(form, march):
+    """Stamps with a name of March in place of {}."""
+    return lambda time: [time.strftime(form.format(march))]
+
+
 def seconds(time):
     return int((time - EPOCH).total_seconds())
 
@@ -101,6 +106,17 @@ def wide_tables(rows):
         ("skipped", table(rows, ["Time"], iso, before="Report of unit 3\r\nMarch 2024\r\n"), "skip = 2", False),
         ("skipped-lines", table(rows, ["Time"], iso, before="Report\r\n").replace("\r\n", "\r\n7,7,7,7,7,7\r\n", 2),
          "skip = [1, 2, 4]", False),
+        ("italian", table(rows, ["Ora"], in_words("%d-{}-%Y %H:%M", "marzo")), "", False),
+        ("portuguese-ansi", table(rows, ["Data"], in_words("%d-{}-%y %H:%M", "mar\u00e7o")).encode("cp1252"), "", False),
+        ("czech-ansi", table(rows, ["Cas"], in_words("%d. {} %Y %H:%M", "b\u0159ezna")).encode("cp1250"), "", False),
+        ("russian-ansi", table(rows, ["t"], in_words("%d-{}-%y %H:%M", "\u043c\u0430\u0440")).encode("cp1251"), "", False),
+        ("spanish-noon", table(rows, ["Time"], lambda t: [t.strftime("%d/%m/%Y %I:%M:%S ")
+                                                          + ("a. m." if t.hour < 12 else "p. m.")]),
+         "date_order = 'day-month-year'", False),
+        ("portuguese", table(rows, ["Data"], in_words("%d de {} de %Y %H:%M", "mar\u00e7o")), "", False),
+        ("chinese", table(rows, ["Time"], in_words("%d-{} -%y %H:%M", "3\u6708")), "", False),
+        ("polish", table(rows, ["Czas"], in_words("%d-{}-%Y %H:%M", "mar")), "language = 'pl'", False),
+        ("words-in-format", table(rows, ["t"], in_words("%d{}%Y:%H:%M", "marzo")), "time_format = '%d%b%Y:%H:%M'", False),
         ("index", table(rows, ["", "Time"], lambda t: [str(seconds(t) % 86400 // 60)] + iso(t)), "", False),
     ]
 
@@ -230,6 +246,42 @@ def check_qualities(files):
     assert not missing(assess(["0"], "quality = {xD = 'Q'}\ngood_quality = ['0']"))
 
 
+def check_found_qualities(files):
+    """A column of qualities that no key names is used in each layout as if it were named, and `init` names it."""
+    rows = [dict(row) for row in files.rows]
+    bad = range(100, 120)
+    for k in bad:
+        rows[k]["xD"] = 1000.0 if k % 2 else 0.7
+    word = lambda k, name: "Bad" if name == "xD" and k in bad else "Good"
+    stamp = lambda k: (START + datetime.timedelta(minutes=k)).isoformat()
+    long = "TagName,EventTime,Status,Value\n" + "".join(
+        f"{name},{stamp(k)},{word(k, name)},{row[name]!r}\n" for k, row in enumerate(rows) for name in COLUMNS)
+    wide = "Time," + ",".join(f"{name},{name}.Status" for name in COLUMNS) + "\n" + "".join(
+        ",".join([stamp(k)] + [f"{row[name]!r},{word(k, name)}" for name in COLUMNS]) + "\n" for k, row in enumerate(rows))
+    alike = wide.replace(".Status", "").replace("xD,xD,xB,xB,R,R,S,S,F,F", "xD,Status,xB,Status,R,Status,S,Status,F,Status")
+    per_tag = ",".join(f"time,{name},Status" for name in COLUMNS) + "\n" + "".join(
+        ",".join(f"{stamp(k)},{row[name]!r},{word(k, name)}" for name in COLUMNS) + "\n" for k, row in enumerate(rows))
+    model = ["--cvs", "xD,xB", "--mvs", "R,S", "--mds", "F", "--gains", "12.8 -18.9 3.8; 6.6 -19.4 4.9",
+             "--time-constants", "16.7 21 14.9; 10.9 14.4 13.2"]
+    for name, content in ("long", long), ("wide", wide), ("alike", alike), ("per tag", per_tag):
+        (files.folder / "s.csv").write_text(content)
+        answer = files.assess("s.csv")
+        named = files.assess("s.csv", "quality = {xD = 'xD.Status'}")
+        assert answer["methods"] == named["methods"], name
+        said, = [w for w in answer["warnings"] if "xD is missing in 20 of" in w]
+        assert "the column 'xD.Status' has none of data.good_quality (good, opc): 'Bad' (20 rows)" in said, said
+        assert "the first in line " in said and "Nothing names this column" in said, said
+        assert not any("xB" in warning and "Status" in warning for warning in answer["warnings"]), answer["warnings"]
+        written = files.run("init", "-", "--data", "s.csv", *model).stdout
+        quality = tomllib.loads(written)["data"]["quality"]
+        assert quality == {each: f"{each}.Status" for each in COLUMNS}, (name, quality)
+        assert "# Guess: the quality" in written
+    only = wide.replace("Bad", "Out of service").replace("Good", "OK")
+    (files.folder / "s.csv").write_text(only)
+    told = files.assess("s.csv")["warnings"]
+    assert any("the column 'xD.Status' has 'OK'" in w and "'Out of service' (20 rows)" in w for w in told), told
+
+
 def check_hdf5(files):
     """Characters of netCDF, and MAT-files of MATLAB 7.3."""
     def characters(file):
@@ -330,6 +382,7 @@ def main(program, study):
             full(record, data, code, options)
         check_tables(files)
         check_qualities(files)
+        check_found_qualities(files)
         check_hdf5(files)
         check_init(files)
 

@@ -306,7 +306,7 @@ std::vector<pid_t> children() {
   return {std::istream_iterator<pid_t>(file), {}};
 }
 
-TEST_CASE("campaign: the audit of a killed worker is said and done again, and found no disagreement") {
+TEST_CASE("campaign: the audit of a worker that crashed is said and done again, and found no disagreement") {
   const Study study = find_study("wood-berry");
   RunOptions options = fourteen();
   options.jobs = 1;
@@ -314,21 +314,46 @@ TEST_CASE("campaign: the audit of a killed worker is said and done again, and fo
   const Campaign serial = run_serially(study, options);
   std::vector<std::string> warnings;
   std::size_t kills = GENERATE(1U, 1000U);  // once, and whenever an outcome comes
-  const auto kill_one = [&](bool) {
+  const auto crash_one = [&](bool) {
     if (kills-- > 0)
       for (const pid_t worker : children())
-        ::kill(worker, SIGKILL);
+        ::kill(worker, SIGSEGV);
   };
-  const CampaignHooks hooks{.on_done = kill_one,
+  const CampaignHooks hooks{.on_done = crash_one,
                             .on_warning = [&](const std::string& text) { warnings.push_back(text); }};
   const Campaign campaign = run_campaign(study, options, hooks);
   REQUIRE_FALSE(warnings.empty());
   CHECK_THAT(warnings.front(),
-             Contains("was lost: worker process ended by signal 9") && Contains("audited again"));
+             Contains("was lost: worker process ended by signal 11") && Contains("audited again"));
   CHECK(summarise(campaign.audit).disagreements == 0);
   check_same(campaign, serial, 14);
   if (warnings.size() == 1)
     check_same_audit(campaign, serial);
+}
+
+TEST_CASE("campaign: what a worker did that somebody killed is done again once, and then the run stops") {
+  const Study study = find_study("wood-berry");
+  RunOptions options = fourteen();
+  options.jobs = 1;
+  options.parallel = Parallel::threads;
+  const Campaign serial = run_serially(study, options);
+  for (const int most : {1, 1000}) {
+    int kills = most;
+    std::vector<std::string> warnings;
+    const auto kill_one = [&](bool) {
+      if (kills-- > 0)
+        for (const pid_t worker : children())
+          ::kill(worker, SIGKILL);
+    };
+    const CampaignHooks hooks{.on_done = kill_one,
+                              .on_warning = [&](const std::string& text) { warnings.push_back(text); }};
+    if (most == 1)
+      check_same(run_campaign(study, options, hooks), serial, 14);
+    else
+      CHECK_THROWS_AS(run_campaign(study, options, hooks), Interrupted);
+    REQUIRE_FALSE(warnings.empty());
+    CHECK_THAT(warnings.front(), Contains("ended by signal 9") && Contains("tried once more"));
+  }
 }
 
 TEST_CASE("campaign: a stop does not wait for the basis case, and keeps what is in shards") {

@@ -6,6 +6,7 @@
 // minute ends the program; the file that the first line names then holds the number of the input, with which
 // FIRST tries it again. Exit code 0 when every kind has inputs of both sorts.
 
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +15,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -33,6 +35,7 @@
 #include "base/system/child_process.hpp"
 #include "base/system/program_trust.hpp"
 #include "bench/campaign/campaign_loops.hpp"
+#include "bench/commands/step_model.hpp"
 #include "bench/parts/part_folder.hpp"
 #include "bench/shards/shard.hpp"
 #include "bench/shards/shard_identity.hpp"
@@ -46,8 +49,10 @@
 #include "results/files/file_seal.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_file.hpp"
+#include "results/records/data_sketch.hpp"
 #include "results/records/netcdf_columns.hpp"
 #include "results/records/plant_record_file.hpp"
+#include "results/records/record_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 #include "tests/scenarios/mutator.hpp"
 
@@ -125,6 +130,24 @@ std::string record_csv() {
   return text;
 }
 
+/// A row a value, with qualities, and stamps in French.
+std::string record_table() {
+  std::string text = "TagName,EventTime,Status,Value\n";
+  for (int k = 0; k < 60; ++k)
+    for (const char* tag : {"xD", "xB", "R", "S", "F"})
+      text +=
+          fmt::format("{},01-ao\xC3\xBBt-24 12:{:02}:00,{},{}\n", tag, k, k == 7 ? "Bad" : "Good", 0.01 * k);
+  return text;
+}
+
+std::string step_responses() {
+  std::string text = "time,y/u,y/v,z/u\n";
+  for (int k = 1; k <= 40; ++k)
+    text += fmt::format("{},{:.5f},{:.3e},{}\n", 2 * k, 1.5 - 1.5 * std::exp(-0.2 * k), 0.1 * k,
+                        k < 5 ? 0.0 : std::exp(-0.1 * k) - 1.0);
+  return text;
+}
+
 MethodDescription answering_all() {
   MethodDescription method;
   method.name = "mine";
@@ -142,6 +165,37 @@ std::vector<std::pair<std::string, std::string>> csv_swaps() {
           {" 12:", " 24:"},       {" 12:", " 99:"},  {"2024", "0024"},      {"2024-03-01 ", "1709251200"},
           {";0", ";-9999"},       {";0", ";1e308"},  {";0", ";9.96921e36"}, {";0", ";\"\"\"0\"\"\""},
           {"time", "\"ti\nme\""}, {"time", ""},      {";xD", ";=xD"},       {"\n", ";\n"}};
+}
+
+/// Words of other languages, code pages and qualities, and what stands in their place.
+std::vector<std::pair<std::string, std::string>> table_swaps() {
+  return {{"ao\xC3\xBBt", "ao\xFBt"},
+          {"ao\xC3\xBBt", "lis"},
+          {"ao\xC3\xBBt", "8\xE6\x9C\x88"},
+          {"ao\xC3\xBBt", "mar"},
+          {"ao\xC3\xBBt", ""},
+          {":00,", ":00 p. m.,"},
+          {":00,", ":00 du,"},
+          {"01-", "mar 01-"},
+          {"-24 ", "-24 de "},
+          {"Good", "192"},
+          {"Good", ""},
+          {"Good", "0x80000000"},
+          {"Bad", "1e30"},
+          {"Status", "Value"},
+          {"Status", "Quality"},
+          {"TagName", "name"},
+          {"xD,", "xD.Status,"},
+          {"xB,", ","},
+          {",0", ",1000"},
+          {"EventTime", "p. m."},
+          {"Value", "xD"}};
+}
+
+std::vector<std::pair<std::string, std::string>> step_swaps() {
+  return {{"y/v", "y/u"},   {"y/u", "y"},    {"y/u", "/u"},  {"time", "Time"},
+          {"time", "t/x"},  {"0.", "1e400"}, {"0.", "-0."},  {"\n2", "\n0"},
+          {"0.", "1e-320"}, {"z/u", "u/z"},  {",0", ",nan"}, {"e-0", "e+30"}};
 }
 
 std::vector<std::pair<std::string, std::string>> verdict_swaps() {
@@ -167,6 +221,8 @@ std::vector<std::pair<std::string, std::string>> netcdf_swaps() {
   };
   std::vector<std::pair<std::string, std::string>> swaps{{"2024-", "0024-"},
                                                          {"minutes", "months "},
+                                                         {"minutes", "nanosec"},
+                                                         {" since ", "  since"},
                                                          {"scale_factor", std::string("_FillValue\0\0", 12)},
                                                          {"add_offset", "_FillValue"},
                                                          {"standard", "360_days"}};
@@ -201,6 +257,19 @@ std::vector<Kind> text_kinds(const fs::path& folder, const fs::path& source) {
        true,
        [study](const std::string& text) { read_plant_record(study, text, "r.csv"); },
        csv_swaps()},
+      {"records, a row a value",
+       {record_table()},
+       true,
+       [study](const std::string& text) {
+         data_sketch(study.plant, csv_record_columns(text, "r.csv", study.data));
+         read_plant_record(study, text, "r.csv");
+       },
+       table_swaps()},
+      {"step responses",
+       {step_responses()},
+       true,
+       from_file(folder / "steps.csv", [](const fs::path& f) { read_step_model(f.string(), std::nullopt); }),
+       step_swaps()},
       {"FMU description", {kFmu}, true, [](const std::string& xml) { parse_fmu_description(xml, "m.fmu"); }},
       {"answer of a method", {kAnswer}, true, [study, method = answering_all()](const std::string& text) {
          const auto answer = nlohmann::ordered_json::parse(text, nullptr, false);

@@ -43,6 +43,8 @@ for line in sys.stdin:
                 sys.exit("out of ideas")
             if how == "killed":
                 os.kill(os.getpid(), 9)
+            if how == "crashes":
+                os.kill(os.getpid(), 11)
             if how == "hangs":
                 time.sleep(3600)
             odd = {"garbage": "never mind", "list": "[1, 2]", "no-number": {"u": u}, "of-later": {**answer, "number": 9999},

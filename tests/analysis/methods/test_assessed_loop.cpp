@@ -59,6 +59,7 @@ class CountingMethod final : public AssessmentMethod {
     ++tally_.asked;
     Assessment assessment;
     assessment.flagged = true;
+    assessment.score = 2.0;
     return assessment;
   }
 

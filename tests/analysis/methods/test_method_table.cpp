@@ -88,6 +88,7 @@ TEST_CASE("a method that locates CVs, flags a loop and names none has no verdict
     Assessment assess(const AssessedLoop& loop) override {
       Assessment assessment;
       assessment.flagged = true;
+      assessment.score = 2.0;
       assessment.cvs.resize(static_cast<std::size_t>(loop.y.rows()));
       return assessment;
     }

@@ -104,7 +104,8 @@ std::string random_study_text() {
     text += ", " + std::to_string(0.25 + 0.1 * i) + (i % 30 == 0 ? "\n" : "");
   text +=
       "]\n[monitoring]\nwindow = 30\nstride = 7\n[calibration]\nhealthy = 50\nseed = 8\n"
-      "[data]\ntime = 'stamp'\ndate = 'day'\ntime_format = '%H:%M'\ntime_zone = 'Europe/Berlin'\nskip = [2, "
+      "[data]\ntime = 'stamp'\ndate = 'day'\ntime_format = '%H:%M'\ntime_zone = 'Europe/Berlin'\nlanguage = "
+      "'it'\nskip = [2, "
       "4]\n"
       "tag_column = 'tag'\nvalue_column = 'value'\nstored_on_change = ['hot']\ntime_unit = 'h'\ndate_order = "
       "'day-month-year'\nseparator = ';'\ndecimal = "
@@ -404,8 +405,12 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
       INFO("[" << name << "] " << key);
       CHECK(written.count({name, key}) != without_value.count({name, key}));
     }
-  for (const char* key : {"weight_convention", "slack", "target_violation_cost", "solver_time_limit"})
+  for (const char* key : {"weight_convention", "slack", "target_violation_cost"})
     CHECK(written.count({"controller", key}) == 1);
+  CHECK(written.count({"controller", "solver_time_limit"}) == 0);  // digests of finished boards have none
+  const std::string limited =
+      replaced(small_study(), "control_horizon = 5", "control_horizon = 5\nsolver_time_limit = 4");
+  CHECK_THAT(resolved_study(parse_study(limited, "s.toml")), Catch::Contains("\nsolver_time_limit = 4.0\n"));
 }
 
 TEST_CASE("a resolved study begins as the document of the study file does", "[resolved_study]") {

@@ -205,7 +205,8 @@ TEST_CASE("hostile texts: the table of a sweep takes them as texts") {
   const std::string text = hostile('=');
   Finding share{.name = "mpm.located", .label = as_label(text), .meaning = text, .form = FindingForm::share};
   share.prominence = Prominence::headline;
-  const Document document = sweep_document(text, {{"", "", true, "", {share}}, {text, text, true, text, {}}});
+  const std::vector<SweepRow> rows{{"", "", true, "", {share}}, {text, text, true, text, {}}};
+  const Document document = sweep_document(text, rows);
   check_markdown(document_markdown(document));
   CHECK_NOTHROW(nlohmann::json::parse(document_json(document)));
 }

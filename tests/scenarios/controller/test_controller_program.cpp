@@ -10,6 +10,7 @@
 
 #include "analysis/study_files/study_file.hpp"
 #include "base/error.hpp"
+#include "base/system/surroundings.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
@@ -91,7 +92,7 @@ TEST_CASE("controller program: what it does wrong fails its loop, and the next o
           "[controller-program]") {
   const std::vector<std::pair<std::string, std::string>> ways{
       {"dies", "ended with code 1; at the end of its stderr: out of ideas"},
-      {"killed", "ended by signal 9"},
+      {"crashes", "ended by signal 11"},
       {"garbage", "found the line 'never mind'; allowed: a JSON object with the number of the message"},
       {"list", "found the line '[1, 2]'"},
       {"no-number", "a JSON object with the number of the message"},
@@ -113,6 +114,10 @@ TEST_CASE("controller program: what it does wrong fails its loop, and the next o
       CHECK_THAT(loop.message, Contains(message));
     }
   }
+}
+
+TEST_CASE("controller program: one that somebody kills has not failed", "[controller-program]") {
+  CHECK_THROWS_AS(loop_of(odd_study("killed")), SurroundingsFailure);
 }
 
 TEST_CASE("controller program: one that hangs is given up", "[controller-program]") {
