@@ -112,7 +112,7 @@ for line in sys.stdin:
 """)
         (folder / "asks.toml").write_text(f'[method.asking]\ncommand = ["{sys.executable}", "asks.py"]\n')
         message = run(program, "compare", "suite/column.worlds.h5", "--method-file", "asks.toml", "--quiet", code=2)
-        assert "method 'asking', description, methods: found 'asking'" in message and "botelho, sun" in message, message
+        assert "method 'asking', description: methods[1]: found \"asking\"" in message and "botelho, sun" in message, message
     return 0
 
 
