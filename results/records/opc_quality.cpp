@@ -50,6 +50,10 @@ OpcCodes opc_codes(const RecordColumns& file, std::size_t column) {
   return ua ? OpcCodes::ua : OpcCodes::da;
 }
 
+bool is_opc_code(const RecordColumns& file, const std::string& cell) {
+  return code_in(file, cell).has_value();
+}
+
 bool is_good_opc(const RecordColumns& file, const std::string& cell, OpcCodes codes) {
   if (begins_with(cell, "good"))
     return true;

@@ -16,6 +16,9 @@ enum class OpcCodes {
 /// otherwise OPC DA.
 OpcCodes opc_codes(const RecordColumns& file, std::size_t column);
 
+/// Is it a code, and no word?
+bool is_opc_code(const RecordColumns& file, const std::string& cell);
+
 /// Is the quality in this cell good: a word that begins with good, or a number (also 0x...) whose code is?
 bool is_good_opc(const RecordColumns& file, const std::string& cell, OpcCodes codes);
 

@@ -15,7 +15,7 @@ namespace mpm {
 namespace {
 
 constexpr std::array<std::string_view, 5> kQualityWords{"quality", "status", "qual", "q", "qc"};
-constexpr std::array<std::string_view, 3> kValueWords{"pv", "value", "val"};
+constexpr std::array<std::string_view, 5> kValueWords{"pv", "value", "val", "sp", "op"};
 constexpr std::string_view kBetween = "._ -/:";
 
 template <std::size_t size>
@@ -59,13 +59,16 @@ std::optional<std::size_t> quality_column_of(const RecordColumns& file, std::siz
 
 bool are_qualities(const RecordColumns& file, std::size_t column) {
   const OpcCodes codes = opc_codes(file, column);
-  bool any_good = false;
+  bool any_good = false, any_code = false, any_word = false;
   for (const std::string& cell : file.columns[column]) {
-    if (!cell.empty() && !is_opc_quality(file, cell, codes))
+    if (cell.empty())
+      continue;
+    if (!is_opc_quality(file, cell, codes))
       return false;
+    (is_opc_code(file, cell) ? any_code : any_word) = true;
     any_good = any_good || is_good_opc(file, cell, codes);
   }
-  return any_good;
+  return any_good && any_code != any_word;  // words, or codes
 }
 
 void name_repeated_qualities(RecordColumns& file) {

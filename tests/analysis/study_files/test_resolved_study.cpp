@@ -75,6 +75,7 @@ std::vector<Study> shipped() {
 std::string random_study_text() {
   std::string text = replaced(small_study(), "[controller.cv.level]\n",
                               "[controller.cv.level]\nsetpoint_weight = 4\nsetpoint = 0.1\n");
+  text = replaced(text, "control_horizon = 5", "control_horizon = 5\nsolver_time_limit = 4");
   text = replaced(
       text, "noise_standard_deviation = 0.01",
       "noise_standard_deviation = {level = 0.01, heat = 0.3}\n"
