@@ -54,6 +54,8 @@ std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoo
   const ChannelErrorFits fits(study, delta);
   std::vector<UnexplainedCv> found;
   for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
+    if ((!(loop.y.row(cv) - loop.y_sim.row(cv)).array().isNaN()).count() < 2)
+      continue;  // nothing is known of its noise
     const ChannelErrorFit fit = fits.of(loop, cv);
     const double noise = std::sqrt(fit.noise) / study.simulation.noise_standard_deviation(cv);
     if (std::isfinite(noise) && noise > kMostNoise &&

@@ -241,9 +241,9 @@ def check_garbage(mistakes):
 
 def check_proportions(mistakes):
     """Values that nothing can be computed with are refused by name; noise that no model explains is not explained."""
-    for value in (-1e160, 1e61, 1e300):
-        mistakes.refused(text_of(mistakes.changed(lambda k, r, v=value: r.update(xD=v * (-1) ** k))),
-                         "record of xD: found", "out of all proportion")
+    for name, value in (("xD", -1e160), ("xB", 1e61), ("xB", 1e300), ("R", 1e200), ("F", 1e200)):
+        mistakes.refused(text_of(mistakes.changed(lambda k, r, n=name, v=value: r.update({n: v * (-1) ** k}))),
+                         f"record of {name}: found {value:g} at sample 0, out of all proportion")
     for name in ("R", "F"):
         mistakes.warned(text_of(mistakes.changed(lambda k, r, n=name: r.update({n: 1e200 if k == 7 else r[n]}))),
                         f"column '{name}': 1 values cannot be measurements and count as missing")

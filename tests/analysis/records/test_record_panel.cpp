@@ -341,6 +341,9 @@ TEST_CASE("the threshold decides where there are simulated records", "[records]"
   of_model.threshold = 3.5;
   of_said.threshold = 8.0;
   CHECK(record_verdict(answers, own) == RecordVerdict::unexplained_cost);
+  RecordAnswers noisy = answers;
+  noisy.has_unexplained = true;
+  CHECK(record_verdict(noisy, own) == RecordVerdict::fault);
 }
 
 }  // namespace
