@@ -85,7 +85,7 @@ class Revisit {
   Revisit(const RevisitedLoops& loops, const std::vector<std::int64_t>& missing)
       : loops_(loops),
         solver_(loops.campaign.info.solver),
-        bytes_(loops.campaign.study, {}),
+        bytes_(loops.campaign.study, AssessmentForms{}),
         records_(records_of(loops.campaign), experiments_of(missing)) {}
 
   LoopWork work(int jobs, const CampaignHooks& hooks) {

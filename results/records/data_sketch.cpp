@@ -16,6 +16,8 @@
 #include <fmt/ranges.h>
 
 #include "analysis/findings/monitored_loop.hpp"
+#include "analysis/statistics/quantile.hpp"
+#include "analysis/statistics/signal_look.hpp"
 #include "base/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
@@ -38,14 +40,6 @@ bool has_word(const std::string& name, const std::string& word) {
     if ((at == 0 || is_border(at - 1)) && is_border(at + word.size()))
       return true;
   return false;
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty())
-    return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Is it called so: "fc11.mode", "fc11_quality"?
@@ -96,74 +90,8 @@ std::vector<double> measured_values(const RecordColumns& file, std::size_t colum
 }
 
 /// The numbers of a column, one after the other.
-struct ColumnLook {
-  std::vector<double> values;
-  double mean = 0.0, deviation = 0.0, lowest = kInfinity, highest = -kInfinity;
-  double changes = 0.0;  ///< share of the values that differ from the one before
-
-  ColumnLook(const RecordColumns& file, std::size_t column) {
-    values = measured_values(file, column);
-    const auto count = static_cast<double>(values.size());
-    for (const double value : values) {
-      mean += value / count;
-      lowest = std::min(lowest, value);
-      highest = std::max(highest, value);
-    }
-    for (std::size_t row = 0; row < values.size(); ++row) {
-      deviation += (values[row] - mean) * (values[row] - mean) / count;
-      changes += row > 0 && values[row] != values[row - 1] ? 1.0 / count : 0.0;
-    }
-    deviation = std::sqrt(deviation);
-  }
-
-  /// The rows in which the value is another one than before.
-  std::vector<std::size_t> fresh() const {
-    std::vector<std::size_t> rows;
-    for (std::size_t row = 0; row < values.size(); ++row)
-      if (row == 0 || values[row] != values[row - 1])
-        rows.push_back(row);
-    return rows;
-  }
-
-  /// Of a signal that is held for most of the time, such as that of an analyser, of the values that are new.
-  double noise() const {
-    constexpr double kOfNormal = 1.4826;  // standard deviation over median absolute deviation
-    constexpr double kHeld = 0.7;         // new values a row: noise that is not held is nearly always new
-    std::vector<double> seen = values, bends;
-    if (changes < kHeld) {
-      seen.clear();
-      for (const std::size_t row : fresh())
-        seen.push_back(values[row]);
-    }
-    for (std::size_t i = 2; i < seen.size(); ++i)
-      bends.push_back(std::abs(seen[i] - 2.0 * seen[i - 1] + seen[i - 2]));
-    return kOfNormal * median_of(std::move(bends)) / std::sqrt(6.0);
-  }
-
-  /// The number of rows from one new value to the next, where it is nearly always the same and more than one.
-  std::optional<std::size_t> period() const {
-    constexpr double kNearlyAlways = 0.9;
-    constexpr std::size_t kFewest = 10;  // new values
-    const std::vector<std::size_t> rows = fresh();
-    std::map<std::size_t, std::size_t> counts;
-    for (std::size_t i = 1; i < rows.size(); ++i)
-      ++counts[rows[i] - rows[i - 1]];
-    for (const auto& [gap, count] : counts)
-      if (gap > 1 && rows.size() > kFewest &&
-          static_cast<double>(count) >= kNearlyAlways * static_cast<double>(rows.size() - 1))
-        return gap;
-    return std::nullopt;
-  }
-
-  /// The share of the values in the tenth of the range at one end.
-  double share_at(bool upper) const {
-    constexpr double kEnd = 0.1;
-    const double width = kEnd * (highest - lowest);
-    const auto inside = std::count_if(values.begin(), values.end(), [&](double value) {
-      return upper ? value >= highest - width : value <= lowest + width;
-    });
-    return static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(values.size(), 1));
-  }
+struct ColumnLook : SignalLook {
+  ColumnLook(const RecordColumns& file, std::size_t column) : SignalLook(measured_values(file, column)) {}
 
   std::string rests() const {
     constexpr double kMost = 0.5;
@@ -266,8 +194,10 @@ class DataSketcher {
     for (std::size_t row = 1; row < rows_.times.size(); ++row)
       if (rows_.times[row] > rows_.times[row - 1])
         steps.push_back(rows_.times[row] - rows_.times[row - 1]);
+    if (steps.empty())
+      return 0.0;
     const std::optional<double> stamp_days = days_in(rows_.unit), plant_days = days_in(plant_.time_unit);
-    return median_of(std::move(steps)) * (stamp_days && plant_days ? *stamp_days / *plant_days : 1.0);
+    return upper_median(std::move(steps)) * (stamp_days && plant_days ? *stamp_days / *plant_days : 1.0);
   }
 
   void line(const std::string& text) { sketch_.table += text + "\n"; }

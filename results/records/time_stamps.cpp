@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/monitored_loop.hpp"
+#include "analysis/statistics/quantile.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
@@ -85,11 +86,7 @@ double median_step(std::vector<double> values) {
   for (std::size_t row = 1; row < values.size(); ++row)
     if (const double step = std::abs(values[row] - values[row - 1]); step > 0.0)
       steps.push_back(step);
-  if (steps.empty())
-    return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return steps.empty() ? 0.0 : upper_median(std::move(steps));
 }
 
 /// Days whose steps suit the controller, and would be far too short for it in the unit of the plant.
