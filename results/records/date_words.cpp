@@ -511,8 +511,9 @@ std::optional<std::vector<std::string>> dates_in_english(
   std::vector<std::string> english;
   english.reserve(cells.size());
   for (const std::string& cell : cells) {
-    std::string made = may_have_words(cell) ? read_in(*found, cell, reads) : "";
-    english.push_back(made.empty() ? cell : std::move(made));
+    english.push_back(may_have_words(cell) ? read_in(*found, cell, reads) : "");
+    if (english.back().empty())
+      english.back() = cell;
   }
   return english;
 }
