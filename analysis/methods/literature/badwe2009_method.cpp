@@ -7,7 +7,7 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/badwe2009.hpp"
-#include "analysis/statistics/best_candidate.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
@@ -110,11 +110,11 @@ class Badwe2009 final : public AssessmentMethod {
     Assessment assessment;
     for (Eigen::Index cv = 0; cv < ny; ++cv) {
       bool flagged = false;
-      double largest = 0.0;
+      double largest = kNaN;  // none of an MV that is left out
       for (Eigen::Index mv = 0; mv < nu; ++mv) {
         const ChannelAssessment& channel = result.channel(cv, mv);
         const double strength = std::abs(channel.correlation.peak) / channel.correlation.band;
-        largest = larger_or_nan(largest, strength);
+        largest = std::fmax(largest, strength);
         flagged = flagged || channel.mismatch;
         if (channel.mismatch)
           assessment.flagged_channels.push_back({cv, mv});

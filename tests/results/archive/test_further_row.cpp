@@ -47,6 +47,7 @@ Campaign campaign_with_fact() {
 /// The records as an archive with these tables has them.
 Hdf5Group written(const TemporaryFolder& folder, const Campaign& campaign,
                   const std::vector<RecordTable>& tables) {
+  std::ofstream(folder / "a.h5").flush();
   const Hdf5File file = Hdf5File::create_at(folder / "a.h5", "a.h5");
   Hdf5Group root = file.root();
   write_records(root, campaign, tables);
