@@ -24,10 +24,10 @@ struct Ratios {
   Eigen::VectorXd time_constant, damping;
 };
 
-using Member = Eigen::VectorXd Ratios::*;
+using RatiosMember = Eigen::VectorXd Ratios::*;
 
 std::vector<RatioSpread> spreads(const Study& study, const std::vector<const Ratios*>& experiments,
-                                 Member member) {
+                                 RatiosMember member) {
   std::vector<RatioSpread> result;
   for (std::size_t m = 0; m < study.s0_perturbation.multipliers.size(); ++m) {
     std::vector<double> values;
@@ -45,7 +45,7 @@ std::vector<RatioSpread> spreads(const Study& study, const std::vector<const Rat
   return result;
 }
 
-S0Change change(const Study& study, const std::vector<const Ratios*>& experiments, Member member) {
+S0Change change(const Study& study, const std::vector<const Ratios*>& experiments, RatiosMember member) {
   const S0PerturbationOptions& options = study.s0_perturbation;
   S0Change result;
   std::int64_t within = 0, judged = 0;

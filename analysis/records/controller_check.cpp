@@ -20,7 +20,7 @@ constexpr Eigen::Index kAnswerLags = 3;  ///< samples within which a move answer
 /// (tests/reliability/records.py, seed 1) all did.
 constexpr double kAnswer = 3.5;
 constexpr Eigen::Index kFewestMoves = 50;
-constexpr double kRounding = 1e-12;  ///< of what an MV may move
+constexpr double kMoveRounding = 1e-12;  ///< of what an MV may move
 
 /// The CVs as the controller gets them: a sample that is missing is the model with the last error.
 Eigen::MatrixXd measured(const AssessedLoop& loop, const Eigen::MatrixXd& y) {
@@ -162,7 +162,7 @@ ControllerCheck check_controller(const RecordFrame& frame, const PlantRecord& re
     const Limits& hard = frame.as_kept.controller.mv_hard;
     const double width =
         std::isfinite(hard.upper(mv) - hard.lower(mv)) ? hard.upper(mv) - hard.lower(mv) : 0.0;
-    if (std::sqrt(variance) <= kRounding * std::max(width, std::abs(mean)))
+    if (std::sqrt(variance) <= kMoveRounding * std::max(width, std::abs(mean)))
       continue;  // it rests
     check.agreement(mv) = 1.0 - (counts * off.square()).sum() / count / variance;
     check.pull(mv) = (counts * off).sum() / count / std::sqrt(variance);

@@ -226,7 +226,7 @@ AssessmentRecord odds_of(const RecordFrame& frame, const RecordAssessment& asses
 std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Study& study,
                                          const QpSolverFactory& factory, RecordAssessment& assessment) {
   assessment.warnings = check_record(study, assessment.record);
-  const std::shared_ptr<const RecordFrame> frame = frame_of(options, study, factory, assessment);
+  std::shared_ptr<const RecordFrame> frame = frame_of(options, study, factory, assessment);
   JudgedRecord judged = RecordPanel(*frame).judge(assessment.record);
   assessment.record.benchmark = judged.benchmark;
   assessment.loop = std::move(judged.loop);

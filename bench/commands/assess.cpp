@@ -94,7 +94,6 @@ void require_own_archive(const std::filesystem::path& archive) {
 TrialRunner kept_trials(const AssessArguments& options, Progress& progress, const std::string& command) {
   return [&options, &progress, &command](const TrialRequest& request) {
     const std::filesystem::path archive = calibration_archive(options);
-    require_own_archive(archive);
     const CampaignHooks hooks = hooks_of(progress);
     RunOptions run = options.run;
     run.methods = request.study.methods;
@@ -131,6 +130,8 @@ ExitCode assess(AssessArguments options, const std::string& command) {
     require_no_input("--output", options.page, {options.study, options.data, calibration.string()});
     require_output_folder(options.page, "page");
   }
+  if (options.trials > 0)
+    require_own_archive(calibration);
   Progress progress(options.quiet);
   PlantRecord record = load_plant_record(study, options.data);
   const auto monitoring = monitoring_of(options, study, record);

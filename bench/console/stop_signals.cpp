@@ -25,7 +25,7 @@ namespace {
 std::atomic<int> received_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);  // else not allowed in a handler
 /// Whose signals these are: a process that is forked leaves its end to its parent.
-pid_t owner = 0;
+pid_t flag_owner = 0;
 
 constexpr int kServedProcessEnded = -1;  // in the place of a signal
 constexpr std::chrono::milliseconds kPatience(1700);
@@ -35,7 +35,7 @@ constexpr itimerval kNoTimer{};
 void note(int signal) {
   const int error = errno;
   received_signal = signal;
-  if (::getpid() == owner)
+  if (::getpid() == flag_owner)
     ::setitimer(ITIMER_REAL, &kTimer, nullptr);
   errno = error;
 }
@@ -72,7 +72,7 @@ struct sigaction install(int signal, void (*handler)(int)) {
 
 StopSignals::StopSignals() {
   received_signal = 0;
-  owner = ::getpid();
+  flag_owner = ::getpid();
   alarm_ = install(SIGALRM, give_up);
   interrupt_ = install(SIGINT, note);
   terminate_ = install(SIGTERM, note);

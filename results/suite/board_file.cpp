@@ -149,7 +149,7 @@ std::string letters_in(const JsonEntry& entry, std::size_t loops,
                        const std::function<bool(std::size_t loop, char letter)>& fits, const char* what) {
   entry.require(entry.json().is_string() && entry.json().get_ref<const std::string&>().size() == loops,
                 fmt::format("a text of {} letters, one for each loop", loops));
-  const auto letters = entry.json().get<std::string>();
+  auto letters = entry.json().get<std::string>();
   for (std::size_t i = 0; i < letters.size(); ++i)
     if (letters[i] != kNoLoop && !fits(i, letters[i]))
       throw InputError(fmt::format("{}, loop {}", entry.place(), i),
@@ -203,8 +203,7 @@ Estimate delay_in(const JsonEntry& entry, const Study& study, std::size_t loops)
   entry.require(parts.size() == 4, "a value, both ends of its interval, and the number of loops");
   const std::int64_t most =
       static_cast<std::int64_t>(loops) * study.monitoring->count(study.simulation.samples);
-  const Estimate delay{
-      rounded_in(parts[0]), {rounded_in(parts[1]), rounded_in(parts[2])}, parts[3].whole(1, most)};
+  Estimate delay{rounded_in(parts[0]), {rounded_in(parts[1]), rounded_in(parts[2])}, parts[3].whole(1, most)};
   parts[0].require(delay.value >= 0.0, "a number from 0 on, or \"Infinity\"");
   const auto& [lower, upper] = delay.interval;
   entry.require(!(lower < 0.0) && !(lower > delay.value) && !(upper < delay.value),
