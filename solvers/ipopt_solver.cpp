@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <new>
 #include <utility>
 
@@ -13,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "base/system/thread_clock.hpp"
 #include "solvers/reduced_program.hpp"
 #include "solvers/working_set.hpp"
 
@@ -24,11 +24,6 @@ constexpr double kRowTolerance = 1e-9;            // a left-out limit counts as 
 constexpr double kInfeasibilityThreshold = 1e-7;  // smallest violation that proves infeasibility
 constexpr std::size_t kManyRows = 200;            // of P1's 1 620 some 130 are in the set at a quiet step
 constexpr double kPushing = 1e-6;                 // multiplier of a limit that pushes
-constexpr double kForever = 1e6;                  // s: Ipopt's own limit of time
-
-double processor_seconds() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 double finite_limit(double limit) {
   return std::clamp(limit, -kIpoptInfinity, kIpoptInfinity);
@@ -43,8 +38,10 @@ class ProgramForIpopt final : public Ipopt::TNLP {
   ProgramForIpopt(const QpStructure& structure, const WorkingSet& set)
       : structure_(structure), set_(set), program_(structure) {}
 
-  /// The problem of the next solve; `start` is the answer it starts from and receives the new one.
-  void bind(const QpData& data, QpResult& start) {
+  /// The problem of the next solve; `start` is the answer it starts from and receives the new one. It stops
+  /// after the iteration in which thread_seconds() reaches `end`.
+  void bind(const QpData& data, QpResult& start, double end) {
+    end_ = end;
     data_ = &data;
     result_ = &start;
     program_.assemble(set_, data, start);
@@ -110,6 +107,11 @@ class ProgramForIpopt final : public Ipopt::TNLP {
     return true;
   }
 
+  bool intermediate_callback(Ipopt::AlgorithmMode, Index, Number, Number, Number, Number, Number, Number, Number,
+                             Number, Index, const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
+    return thread_seconds() < end_;
+  }
+
   void finalize_solution(Ipopt::SolverReturn, Index n, const Number* x, const Number* z_lower,
                          const Number* z_upper, Index m, const Number*, const Number* lambda, Number,
                          const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
@@ -145,6 +147,7 @@ class ProgramForIpopt final : public Ipopt::TNLP {
   const QpStructure& structure_;
   const WorkingSet& set_;
   ReducedProgram program_;
+  double end_ = 0.0;
   const QpData* data_ = nullptr;
   QpResult* result_ = nullptr;
 };
@@ -178,7 +181,7 @@ QpStatus status_of(Ipopt::ApplicationReturnStatus status) {
       return QpStatus::infeasible;
     case Ipopt::Maximum_Iterations_Exceeded:
       return QpStatus::iteration_limit;
-    case Ipopt::Maximum_CpuTime_Exceeded:
+    case Ipopt::User_Requested_Stop:  // by intermediate_callback()
       return QpStatus::time_limit;
     case Ipopt::Insufficient_Memory:
       throw std::bad_alloc();
@@ -231,12 +234,11 @@ class IpoptSolver::Implementation {
       throw InputError("Ipopt", "an installation that does not start", "Ipopt 3.11 or later with MUMPS");
   }
 
-  /// One Ipopt run over the working set, from and into `result`, of so many seconds.
-  QpStatus run(const QpData& data, QpResult& result, double seconds) {
-    if (seconds <= 0.0)
+  /// One Ipopt run over the working set, from and into `result`, until thread_seconds() reaches `end`.
+  QpStatus run(const QpData& data, QpResult& result, double end) {
+    if (thread_seconds() >= end)
       return QpStatus::time_limit;
-    application_->Options()->SetNumericValue("max_cpu_time", std::min(seconds, kForever));
-    program_->bind(data, result);
+    program_->bind(data, result, end);
     const QpStatus status = status_of(application_->OptimizeTNLP(program_));
     if (const auto statistics = application_->Statistics(); Ipopt::IsValid(statistics))
       result.iterations += statistics->IterationCount();
@@ -262,12 +264,8 @@ void IpoptSolver::do_reset() {
   implementation_->set.clear();
 }
 
-double IpoptSolver::seconds_left() const {
-  return end_ - processor_seconds();
-}
-
 void IpoptSolver::do_solve(const QpData& data, QpResult& result) {
-  end_ = processor_seconds() + time_limit();
+  end_ = thread_seconds() + time_limit();
   if (result.status != QpStatus::solved)
     forget_answer(result);
   result.iterations = 0;
@@ -322,7 +320,7 @@ void IpoptSolver::solve_full(const QpData& data, QpResult& result) {
 // Near the limit of double precision Ipopt may end for want of progress at a point that is as good as any:
 // the certificate decides.
 void IpoptSolver::run(const QpData& data, QpResult& result) {
-  result.status = implementation_->run(data, result, seconds_left());
+  result.status = implementation_->run(data, result, end_);
   if (result.status != QpStatus::solved && kkt_residual(structure(), data, result) <= kSolvedKktResidual)
     result.status = QpStatus::solved;
 }
@@ -347,7 +345,7 @@ bool IpoptSolver::certainly_infeasible(const QpData& data) {
   relaxed.upper = data.upper;
   relaxed.soft_lower = data.hard_lower;
   relaxed.soft_upper = data.hard_upper;
-  feasibility_->set_time_limit(seconds_left());
+  feasibility_->set_time_limit(end_ - thread_seconds());
   feasibility_->reset();
   const QpResult& smallest = feasibility_->solve(relaxed);
   return smallest.status == QpStatus::solved && smallest.slack(0) > kInfeasibilityThreshold;

@@ -34,7 +34,7 @@ struct IpoptOptions {
 /// all limits are tried at once, and a run that Ipopt ends as a failure counts as solved if its point passes
 /// kkt_residual() with at most 1e-7.
 ///
-/// The time limit of a problem (set_time_limit()) is one of the processor time of the process, and looked at
+/// The time limit of a problem (set_time_limit()) is one of the processor time of the thread, and looked at
 /// between iterations. Throws std::bad_alloc when Ipopt has no memory.
 ///
 /// Ipopt with sequential MUMPS must not run in two threads of one process.
@@ -53,10 +53,9 @@ class IpoptSolver final : public QpSolver {
   void solve_full(const QpData& data, QpResult& result);
   void run(const QpData& data, QpResult& result);
   bool certainly_infeasible(const QpData& data);
-  double seconds_left() const;
 
   IpoptOptions options_;
-  double end_ = 0.0;  ///< of the time of the problem, as processor_seconds()
+  double end_ = 0.0;  ///< of the time of the problem, as thread_seconds()
   std::unique_ptr<Implementation> implementation_;
   std::unique_ptr<IpoptSolver> feasibility_;  ///< made when first needed
 };
