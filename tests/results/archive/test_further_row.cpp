@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "results/archive/archive_record_reader.hpp"
 #include "results/archive/csv_table.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "results/files/atomic_file.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 // A further fact of an experiment costs one row: archive, bytes of shards, comparison and CSV have it then.
@@ -48,12 +48,11 @@ Campaign campaign_with_fact() {
 /// The records as an archive with these tables has them.
 Hdf5Group written(const TemporaryFolder& folder, const Campaign& campaign,
                   const std::vector<RecordTable>& tables) {
-  std::ofstream(folder / "a.h5").flush();
-  const Hdf5File file = Hdf5File::create_at(folder / "a.h5", "a.h5");
+  const Hdf5File file = Hdf5File::create("a.h5");
   Hdf5Group root = file.root();
   write_records(root, campaign, tables);
   write_methods(root, campaign, findings_of(campaign));
-  file.finish();
+  write_file_atomically(folder / "a.h5", file.image());
   return Hdf5File::open(folder / "a.h5").root();
 }
 
