@@ -278,8 +278,10 @@ struct CostLens {
 /// What faults cost in the worlds of a study, but for the ratios of the variances: ivar_basis.
 std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
   using C = FaultCost;
-  const char* const same =
-      "against the same loop without the fault, mean over noise; NaN unless the status is ok";
+  const std::string same =
+      "against the same loop without the fault, mean over noise; NaN where the status is not ok, and where "
+      "one "
+      "of these loops does not run to its end";
   const auto of_cv = [&](NumberText text, Eigen::VectorXd C::*member) {
     return vector_row<C>(std::move(text), "cv", study.cv_count(), member);
   };
@@ -289,8 +291,10 @@ std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
       of_cv({"violation", "what the fault adds to the mean distance outside the soft limits",
              common_unit(study.plant.cvs), same},
             &C::violation),
-      member_row<double>({"loss_ratio", "cost of the loop with the fault over that without it", "1", same},
-                         &C::loss_ratio),
+      member_row<double>(
+          {"loss_ratio", "cost of the loop with the fault over that without it", "1",
+           same + ", and where neither costs anything; infinite where the latter costs nothing"},
+          &C::loss_ratio),
       member_row<double>(
           {"loss_ratio_error", "standard error of loss_ratio", "1", "NaN: of one pair of loops"}, &C::error),
       member_row<double>({"effort", "what the fault adds to the cost of the moves", "1", same}, &C::effort),

@@ -8,10 +8,13 @@ import numpy
 OK = 0  # of `status` and `assessment_status`
 
 
+def said_of(variable):
+    return " ".join(str(variable.attrs.get(name, "")) for name in ("long_name", "comment"))
+
+
 def says_missing(variable):
     """The description of a variable says itself that its numbers may be missing, for another reason than the status."""
-    text = " ".join(str(variable.attrs.get(name, "")) for name in ("long_name", "comment"))
-    text = re.sub(r"NaN unless the (assessment )?status is ok", "", text)
+    text = re.sub(r"NaN unless the (assessment )?status is ok", "", said_of(variable))
     return "NaN" in text or "infinite" in text or "infinity" in text
 
 
@@ -39,7 +42,7 @@ def missing_numbers(path):
                 values = values[assessed[:, names.index(method)]]
             elif short == "score" and not group:
                 values = values[assessed]
-            elif short == "ivar_basis" and not group:
+            elif not group and "NaN unless the status is ok" in said_of(variable):
                 values = values[status]
             elif group == "calibration" or group == "findings":
                 return
