@@ -8,12 +8,16 @@ from collections import defaultdict
 
 import tree
 
+# Inline functions and templates, of other libraries too: a source that finds them in a header brings its own.
+WEAK = {"W", "V", "u"}
+
 
 def symbols(libraries, *options):
     """The symbols of all members of some libraries, without those that nm leaves out by these options."""
     said = subprocess.run(["nm", "--format=posix", *options, *map(str, libraries)], capture_output=True, text=True,
                           check=True).stdout
-    return {line.split()[0] for line in said.splitlines() if line and not line.endswith(":")}
+    lines = (line.split() for line in said.splitlines() if line and not line.endswith(":"))
+    return {words[0] for words in lines if words[1] not in WEAK}
 
 
 def readable(symbol):
