@@ -1,5 +1,6 @@
 """Methods of assessment that are functions of a loop."""
 
+import copy
 import functools
 import inspect
 import json
@@ -126,7 +127,7 @@ class Session:
 
     def _context(self, context):
         self.context = context
-        self.learnt = self.method.learn and self.method.learn(context)
+        self.learnt = self.method.learn and self.method.learn(copy.deepcopy(context))
         self._benchmark = Loop(context["benchmark"], context, self.learnt)
         return {}
 

@@ -1,5 +1,6 @@
 """A loop as a method sees it."""
 
+import copy
 import functools
 
 import numpy
@@ -26,28 +27,33 @@ class Loop:
     """
 
     def __init__(self, signals, context, learnt=None, whole=None, first=0):
-        self._signals, self.context, self.learnt = signals, context, learnt
+        self._signals, self._known, self.learnt = signals, context, learnt
         self._whole, self.first = whole, first
+
+    @functools.cached_property
+    def context(self):
+        """What a method may know besides the loop. It is the loop's own: what a method changes in it, no other sees."""
+        return copy.deepcopy(self._known)
 
     @property
     def cvs(self):
-        return [cv["name"] for cv in self.context["cvs"]]
+        return [cv["name"] for cv in self._known["cvs"]]
 
     @property
     def mvs(self):
-        return [mv["name"] for mv in self.context["mvs"]]
+        return [mv["name"] for mv in self._known["mvs"]]
 
     @property
     def mds(self):
-        return [md["name"] for md in self.context["mds"]]
+        return [md["name"] for md in self._known["mds"]]
 
     @property
     def sample_time(self):
-        return self.context["sample_time"]
+        return self._known["sample_time"]
 
     @property
     def time_unit(self):
-        return self.context["time_unit"]
+        return self._known["time_unit"]
 
     @property
     def time(self):
@@ -56,12 +62,12 @@ class Loop:
 
     @functools.cached_property
     def benchmark(self):
-        return Loop(self.context["benchmark"], self.context)
+        return Loop(self._known["benchmark"], self._known)
 
     @functools.cached_property
     def whole(self):
         """Of a moving window, the record that it is a part of, from the sample `first` on; the loop itself otherwise."""
-        return self if self._whole is None else Loop(self._whole, self.context, self.learnt)
+        return self if self._whole is None else Loop(self._whole, self._known, self.learnt)
 
     def __getattr__(self, name):
         if name not in SIGNALS:

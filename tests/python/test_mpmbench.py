@@ -305,6 +305,7 @@ class Hostile(unittest.TestCase):
                 variable["name"] = variable["unit"] = r"$\frac{$"
         loop.context["time_unit"] = r"$\frac{$"
         loop.plot().savefig("dollars.svg")
+        self.assertEqual(archive.loop(3).context["cvs"][0]["name"], "xD")
 
 
 class Programs(unittest.TestCase):
