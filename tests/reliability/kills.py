@@ -55,7 +55,7 @@ def trial(bench, case, draws):
         ended = "killed" if code < 0 else f"exit code {code}"
         # it struck a worker, or the program that a script has started, and the parent says so
         worker = way == "SIGKILL at a call" and code == (1 if case.script else 3)
-        if code > 0 and not (code == 3 and (way in ("SIGTERM", "SIGINT") or worker)):
+        if code > 0 and not worker and not (code == 3 and way in ("SIGTERM", "SIGINT")):
             findings.append(f"exit code {code}: {error.strip()}")
     findings += bench.half_written(case, old)
     findings += bench.goes_on(case)
