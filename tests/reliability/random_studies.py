@@ -108,14 +108,15 @@ class Trial:
 
     def run(self):
         """The outcome: refused, failed to run, or run."""
-        valid, _ = self.ask("validate", "study.toml", "--jobs", 1, "--quiet", *(["--json"] * (self.number % 2)), codes=(0, 2))
+        solver = ["--solver", self.chance.choice(["auto", "auto", "active-set"])]
+        valid, _ = self.ask("validate", "study.toml", *solver, "--jobs", 1, "--quiet", *(["--json"] * (self.number % 2)),
+                            codes=(0, 2))
         refusal = self.said
         methods = self.chance.choice([["all"], ["botelho"], ["botelho", "mpmbench"], self.chance.sample(self.methods(), 4), ["botelho", *self.chance.sample(self.methods(), 3)],
                                       self.chance.sample(self.methods(), 2)])
         self.words = ["run", "study.toml", "--methods", ",".join(methods), "--store",
-                      self.chance.choice(["all", "flagged", "none", "truth"]), "--solver",
-                      self.chance.choice(["auto", "auto", "active-set"]), "--audit", self.chance.choice([0, 0.01]),
-                      "--allow-unhealthy-basis", "--quiet"]
+                      self.chance.choice(["all", "flagged", "none", "truth"]), *solver, "--audit",
+                      self.chance.choice([0, 0.01]), "--allow-unhealthy-basis", "--quiet"]
         begin = time.monotonic()
         code, _ = self.ask(*self.words, "--jobs", 1, "-o", "whole.h5", codes=(0, 2))
         took = time.monotonic() - begin
