@@ -88,7 +88,7 @@ def run(words, *, text=None, broker=None, quiet=False):
         warnings.warn(warning, ProgramWarning, stacklevel=3)
     if process.returncode:
         kind = {2: InputError, 3: Unfinished}.get(process.returncode, Error)
-        raise kind(message(watch.text or said), process.returncode)
+        raise kind(message(watch.text or said, process.returncode), process.returncode)
     return said
 
 
@@ -150,11 +150,13 @@ def stop(process):
             process.wait()
 
 
-def message(text):
-    """What the program says of its error, without its name."""
+def message(text, code):
+    """What the program says of its error, without its name; the signal that has ended it."""
+    if code < 0:
+        return f"the program mpmbench was ended by the signal {signal.Signals(-code).name}"
     lines = [line for line in text.strip().splitlines() if not line.endswith(" --help lists the options")]
     first = max((i for i, line in enumerate(lines) if line.startswith("mpmbench: ")), default=0)
-    return re.sub(r"^mpmbench: ", "", "\n".join(lines[first:])) or "the program mpmbench ended without a message"
+    return re.sub(r"^mpmbench: ", "", "\n".join(lines[first:])) or f"the program mpmbench ended with code {code} and no message"
 
 
 def temporary(name):

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import tomllib
 import unittest
+import unittest.mock
 
 import numpy
 import pandas
@@ -327,6 +328,14 @@ class Programs(unittest.TestCase):
                                       ("a/lib/b/c/python/mpmbench", None)):
                 found = program.beside(top / package)
                 self.assertEqual(found, expected and top / expected, package)
+
+    def test_a_program_that_a_signal_ends_is_said_to_be(self):
+        killed = pathlib.Path("killed.sh")
+        killed.write_text("#!/bin/sh\necho 1/2 experiments >&2\nkill -9 $$\n")
+        killed.chmod(0o700)
+        with unittest.mock.patch.dict(os.environ, MPMBENCH_PROGRAM=str(killed.resolve())):
+            with self.assertRaisesRegex(mpmbench.Error, "ended by the signal SIGKILL"):
+                mpmbench.command("studies", quiet=True)
 
 
 class Boards(unittest.TestCase):
