@@ -2,12 +2,16 @@
 
 import json
 import os
+import signal
 import subprocess
+import tempfile
 import time
 
 
 class Browser:
-    def __init__(self, chromium, folder):
+    def __init__(self, chromium):
+        # processes of its own may still write there when it has gone
+        self.home = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_browser, commands = os.pipe()
         answers, from_browser = os.pipe()
 
@@ -18,10 +22,10 @@ class Browser:
 
         self.process = subprocess.Popen(
             [chromium, "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
-             "--disable-background-networking", f"--user-data-dir={folder / 'profile'}", "--remote-debugging-pipe",
+             "--disable-background-networking", f"--user-data-dir={self.home.name}/profile", "--remote-debugging-pipe",
              "about:blank"],
             preexec_fn=connect, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            env={**os.environ, "HOME": str(folder)})
+            env={**os.environ, "HOME": self.home.name}, start_new_session=True)
         os.close(to_browser)
         os.close(from_browser)
         self.commands, self.answers = os.fdopen(commands, "wb", 0), os.fdopen(answers, "rb", 0)
@@ -32,8 +36,9 @@ class Browser:
         return self
 
     def __exit__(self, *_):
-        self.process.kill()
+        os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait()
+        self.home.cleanup()
         self.commands.close()
         self.answers.close()
 

@@ -216,7 +216,7 @@ def main(program, write_sample_archive, chromium=""):
         if not chromium:
             print("skipped: chromium is not installed (.ci/packages.txt), so the page was not opened in a browser")
             return SKIPPED
-        with Browser(chromium, folder) as browser:
+        with Browser(chromium) as browser:
             check_in_browser(browser, page, LOOPS_ON_PAGE, random=True)
             check_in_browser(browser, named, SCENARIO_FIGURES, random=False)
             check_shown(browser, change)

@@ -168,7 +168,7 @@ def main(program, root, chromium=""):
         shown = words.read_text(encoding="utf-8")
         assert "in brackets" not in shown and "the thesis gives no numbers here, only verdicts" in shown
         if chromium:
-            with Browser(chromium, folder) as browser:
+            with Browser(chromium) as browser:
                 check_shown(browser, page)
                 check_shown(browser, wide)
                 browser.open(wide.as_uri(), 1280)
