@@ -256,6 +256,8 @@ RecordAnswers RecordAssessment::answers_of(std::size_t method) const {
 }
 
 Eigen::Index worst_cv(const RecordAssessment& of) {
+  if (!of.unexplained.empty())
+    return of.unexplained.front().cv;
   if (of.found() == RecordVerdict::fault && of.verdict().predicted_cv >= 0)
     return of.verdict().predicted_cv;
   return std::max<Eigen::Index>(0, of.model.predicted_cv);

@@ -80,7 +80,8 @@ struct RecordAssessment {
   const RepairProspect* named_prospect() const;
 };
 
-/// The CV that a person looks at first: that of the verdict, or the one that the model explains least.
+/// The CV that a person looks at first: the first one of `unexplained`, otherwise that of the verdict, or the
+/// one that the model explains least.
 Eigen::Index worst_cv(const RecordAssessment& assessment);
 
 /// How a record is assessed.

@@ -43,11 +43,11 @@ constexpr int kFewestWindowSamples = 24;
 
 struct AssessArguments {
   std::string study, data;
-  std::vector<std::string> methods{"mpmbench"};
+  std::vector<std::string> methods = AssessOptions{}.methods;
   std::string page;         ///< none when empty
   std::string calibration;  ///< archive; beside the data when empty
-  int trials = 200;
-  double model_error = 5.0;  ///< percent
+  int trials = AssessOptions{}.trials;
+  double model_error = 100.0 * AssessOptions{}.model_error;  ///< percent
   std::optional<int> window, stride;
   RunOptions run;
   bool json = false;

@@ -49,7 +49,8 @@ PartNumber part_by(const Launcher& launcher, std::int64_t number, std::int64_t o
   const std::int64_t place = (number - first) / step;
   if (number < first || place >= of || of > kMostTasks)
     throw InputError(fmt::format("--shard auto: environment variable {}", launcher.number),
-                     fmt::format("{} of {}", number, of), fmt::format("{} to {}", first, of - 1 + first));
+                     fmt::format("{} of {}", number, of),
+                     fmt::format("{} to {}", first, first + (of - 1) * step));
   return {place + 1, of, fmt::format(fmt::runtime(launcher.name), place + 1, of)};
 }
 

@@ -8,7 +8,11 @@
 #include "results/records/plant_record_file.hpp"
 #include "solvers/qp_solver_factory.hpp"
 
-int main(int, char** words) {
+int main(int count, char** words) {
+  if (count != 3) {
+    std::fputs("usage: assess_record STUDY RECORD\n", stderr);
+    return 2;
+  }
   const mpm::Study study = mpm::load_study(words[1]);
   const mpm::QpSolverFactory solver = mpm::qp_solver_factory("auto");
   const mpm::RecordAssessment assessment = mpm::assess_record(

@@ -1,6 +1,7 @@
 #include "results/archive/record_tables.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <optional>
@@ -279,9 +280,8 @@ struct CostLens {
 std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
   using C = FaultCost;
   const std::string same =
-      "against the same loop without the fault, mean over noise; NaN where the status is not ok, and where "
-      "one "
-      "of these loops does not run to its end";
+      "against the same loop without the fault, mean over noise; NaN where the status is not ok, and "
+      "where one of these loops does not run to its end";
   const auto of_cv = [&](NumberText text, Eigen::VectorXd C::*member) {
     return vector_row<C>(std::move(text), "cv", study.cv_count(), member);
   };
@@ -295,8 +295,9 @@ std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
           {"loss_ratio", "cost of the loop with the fault over that without it", "1",
            same + ", and where neither costs anything; infinite where the latter costs nothing"},
           &C::loss_ratio),
-      member_row<double>(
-          {"loss_ratio_error", "standard error of loss_ratio", "1", "NaN: of one pair of loops"}, &C::error),
+      member_row<double>({"loss_ratio_error", "standard error of loss_ratio", "1",
+                          "NaN: of one pair of loops, or as loss_ratio"},
+                         &C::error),
       member_row<double>({"effort", "what the fault adds to the cost of the moves", "1", same}, &C::effort),
       member_row<double>(
           {"economics", "what the fault adds to the objective of the target optimizer", "1", same},
@@ -473,7 +474,7 @@ RowAccess<AssessmentRecord, T> access_of(const NumberPlace& place) {
   return {[=](const AssessmentRecord& assessment, T* values) {
             for (Eigen::Index i = 0; i < size; ++i) {
               const double number = assessment.numbers.size() == 0 ? kNaN : assessment.numbers(first + i);
-              values[i] = kQuantity || number == number ? static_cast<T>(number) : T(-1);
+              values[i] = kQuantity || !std::isnan(number) ? static_cast<T>(number) : T(-1);
             }
           },
           [=](AssessmentRecord& assessment, const T* values) {

@@ -56,12 +56,11 @@ std::string flag_sentence(const RecordAssessment& of) {
 
 void add_unexplained(const RecordAssessment& of, Texts& sentences) {
   for (const UnexplainedCv& each : of.unexplained)
-    sentences.push_back(
-        fmt::format("The model does not explain {}: its noise is {:.2g} times that of the study, and the "
-                    "model leaves more "
-                    "than half of what it does. Look at its sensor, and at the noise of the study "
-                    "(simulation.noise_standard_deviation).",
-                    cv_name(of.study, each.cv), each.noise));
+    sentences.push_back(fmt::format(
+        "The model does not explain {}: its noise is {:.2g} times that of the study, and the "
+        "model leaves more than half of what it does. Look at its sensor, and at the noise of the study "
+        "(simulation.noise_standard_deviation).",
+        cv_name(of.study, each.cv), each.noise));
 }
 
 /// The mismatch without its size where the repair beside it identifies that again: one record, one number.
@@ -71,6 +70,13 @@ NamedMismatch told_once(const RecordAssessment& of, NamedMismatch named) {
   return named;
 }
 
+/// In whole percent; no probability that is computed under a list of hypotheses is 0 or 100 %.
+std::string probability_text(double probability) {
+  return probability > 0.99   ? "more than 99 %"
+         : probability < 0.01 ? "less than 1 %"
+                              : fmt::format("{:.0f} %", 100.0 * probability);
+}
+
 /// How probable mismatch, disturbance and valve are, given a fault.
 void add_odds(const RecordAssessment& of, Texts& sentences) {
   const std::optional<FaultOdds> odds = of.fault_odds();
@@ -78,12 +84,11 @@ void add_odds(const RecordAssessment& of, Texts& sentences) {
     return;
   const std::string valve = odds->other < 0.005
                                 ? ""
-                                : fmt::format(", a valve that sticks ({}) with {:.0f} %",
-                                              stuck_mv(of.study, of.odds), 100.0 * odds->other);
+                                : fmt::format(", a valve that sticks ({}) with {}",
+                                              stuck_mv(of.study, of.odds), probability_text(odds->other));
   sentences.push_back(fmt::format(
-      "Given a fault, the likelihood sees a mismatch with a probability of {:.0f} %, a disturbance with "
-      "{:.0f} %{}{}.",
-      100.0 * (odds->mpm + odds->mpm_ud), 100.0 * (odds->ud + odds->mpm_ud), valve,
+      "Given a fault, the likelihood sees a mismatch with a probability of {}, a disturbance with {}{}{}.",
+      probability_text(odds->mpm + odds->mpm_ud), probability_text(odds->ud + odds->mpm_ud), valve,
       of.model_error > 0.0
           ? fmt::format(" (errors of the model of {:.3g} % are integrated out)", 100.0 * of.model_error)
           : std::string()));

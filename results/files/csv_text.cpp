@@ -14,14 +14,7 @@ namespace mpm {
 namespace {
 
 constexpr std::string_view kSeparators = ",;\t|";
-constexpr std::string_view kBlanks = " \t\r";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string_view without_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  return first == std::string_view::npos ? std::string_view()
-                                         : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 void refuse_bytes(std::string_view text, const std::string& file) {
   if (text.find('\0') != std::string_view::npos)

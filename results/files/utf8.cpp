@@ -80,6 +80,13 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
+std::string_view without_blanks(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
 std::string_view cut_utf8(std::string_view text, std::size_t most) {
   if (text.size() <= most)
     return text;

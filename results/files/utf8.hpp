@@ -26,6 +26,9 @@ std::string utf8_of_utf16(std::string_view bytes);
 /// The same with small letters in place of the capitals of ASCII.
 std::string in_lower_case(std::string text);
 
+/// Without the blanks, tabs and carriage returns around it.
+std::string_view without_blanks(std::string_view text);
+
 /// The first `most` bytes of `text`, less what would be half a character of UTF-8.
 std::string_view cut_utf8(std::string_view text, std::size_t most);
 

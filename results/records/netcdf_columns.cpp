@@ -53,11 +53,6 @@ std::optional<double> seconds_in(std::string unit) {
   return std::nullopt;
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
-}
-
 /// A date in which each number has two digits at least, as people write 1900-1-1 0:0:0 here.
 std::string with_two_digits(const std::string& date) {
   const auto is_digit = [&date](std::size_t at) {
@@ -141,7 +136,8 @@ class NetcdfReader {
     const std::size_t since = in_lower_case(units).find(kSince);
     return since == std::string::npos
                ? numbers
-               : dates(trimmed(units.substr(0, since)), trimmed(units.substr(since + kSince.size())));
+               : dates(std::string(without_blanks(units.substr(0, since))),
+                       std::string(without_blanks(units.substr(since + kSince.size()))));
   }
 
   /// The date that times are counted from, in s since 1970: of the calendar that clocks have.

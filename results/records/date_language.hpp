@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mpm {
+
+/// The words of the dates of one language of CLDR, or of several in which they are the same.
+class DateLanguage;
+
+/// Those of CLDR, each kind of words once.
+const std::vector<const DateLanguage*>& date_languages();
+
+/// Such as "it" or "pt_BR".
+const std::vector<std::string>& language_names(const DateLanguage& language);
+
+/// A cell with the words of English in place of those of the language, as the first code page has it in which
+/// it is read; empty: it is not.
+std::string read_in(const DateLanguage& language, const std::string& cell,
+                    const std::function<bool(const std::string&)>& reads);
+
+/// Does a word of the cell say the month, the day of the week or which half of the day it is, in any
+/// language?
+bool has_date_words(std::string_view cell);
+
+}  // namespace mpm
