@@ -10,8 +10,11 @@ bool is_certified(const QpResult& result) {
   return result.status == QpStatus::infeasible || result.certified;
 }
 
-CertifiedSolver::CertifiedSolver(std::shared_ptr<const QpStructure> structure)
-    : QpSolver(structure), shared_structure_(structure), active_set_(std::move(structure), {}) {}
+CertifiedSolver::CertifiedSolver(std::shared_ptr<const QpStructure> structure, std::int64_t* left_to_others)
+    : QpSolver(structure),
+      shared_structure_(structure),
+      active_set_(std::move(structure), {}),
+      left_to_others_(left_to_others) {}
 
 CertifiedSolver::~CertifiedSolver() = default;
 
@@ -23,6 +26,10 @@ void CertifiedSolver::do_solve(const QpData& data, QpResult& result) {
   result = active_set_.solve(data);
   if (is_certified(result))
     return;
+  if (left_to_others_ != nullptr) {
+    ++*left_to_others_;
+    return;
+  }
   if (!ipopt_)
     ipopt_ = std::make_unique<IpoptSolver>(shared_structure_, IpoptOptions{});
   ipopt_->set_time_limit(time_limit());

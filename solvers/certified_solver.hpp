@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "solvers/active_set_solver.hpp"
@@ -15,11 +16,14 @@ bool is_certified(const QpResult& result);
 
 /// The active-set method, and Ipopt for the problems to which it gives no certified answer; these are marked
 /// `from_ipopt`. It is Ipopt that makes the rule of IpoptSolver hold here too: one thread of a process
-/// only. ActiveSetSolver alone gives the same answers, bit for bit, up to the first that is not certified.
+/// only. Where Ipopt cannot run, such problems are counted for somebody else to solve: up to the first of
+/// them the answers are the same, bit for bit.
 class CertifiedSolver final : public QpSolver {
  public:
-  /// Throws InputError when the structure is not valid.
-  explicit CertifiedSolver(std::shared_ptr<const QpStructure> structure);
+  /// Asks Ipopt, or adds 1 to `left_to_others`, which must outlive it, for each problem that needs it. Throws
+  /// InputError when the structure is not valid.
+  explicit CertifiedSolver(std::shared_ptr<const QpStructure> structure,
+                           std::int64_t* left_to_others = nullptr);
   ~CertifiedSolver() override;
 
  private:
@@ -29,6 +33,7 @@ class CertifiedSolver final : public QpSolver {
 
   std::shared_ptr<const QpStructure> shared_structure_;
   ActiveSetSolver active_set_;
+  std::int64_t* left_to_others_;
   std::unique_ptr<IpoptSolver> ipopt_;  ///< made when first needed
 };
 

@@ -15,6 +15,7 @@
 #include "base/same_members.hpp"
 #include "base/system/surroundings.hpp"
 #include "bench/execution/experiment_work.hpp"
+#include "bench/execution/thread_worker.hpp"
 #include "results/archive/loop_rows.hpp"
 #include "scenarios/loop/calibration.hpp"
 #include "solvers/qp_solver_factory.hpp"
@@ -32,12 +33,11 @@ void require_options(const RunOptions& options) {
 
 /// What one thread or process works with.
 struct CampaignWorker {
-  CampaignWorker(const CampaignLoops& loops, const BasisCase& basis, const std::string& solver)
+  CampaignWorker(const CampaignLoops& loops, const BasisCase& basis, const QpSolverFactory& factory)
       : calibration_run(calibration_options(loops.options())),
-        experiments(loops.study(), loops.study(), basis, loops.options(), qp_solver_factory(solver)) {
+        experiments(loops.study(), loops.study(), basis, loops.options(), factory) {
     if (loops.count() > loops.experiments())
-      calibration.emplace(loops.calibration(), loops.study(), basis, calibration_run,
-                          qp_solver_factory(solver));
+      calibration.emplace(loops.calibration(), loops.study(), basis, calibration_run, factory);
   }
 
   ExperimentOutcome run(std::int64_t key) {
@@ -97,10 +97,6 @@ bool runs_in_threads(const Study& study, const RunOptions& options) {
   return options.parallel == Parallel::by_solver ? safe && !foreign : options.parallel == Parallel::threads;
 }
 
-bool needs_ipopt(const ExperimentRecord& record) {
-  return record.status == ExperimentStatus::failed || record.solver.uncertified > 0;
-}
-
 CampaignLoops::CampaignLoops(Study study, RunOptions options)
     : study_(std::move(study)),
       options_(std::move(options)),
@@ -153,23 +149,27 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
   const bool fall_back = options_.solver == "auto" && !study_.controller_program;
   if (in_threads)
     work.thread = [this, &basis, fall_back] {
-      return [this, fall_back, worker = std::make_shared<CampaignWorker>(*this, basis, "active-set")](
+      const auto make = [this, &basis](const QpSolverFactory& factory) {
+        return std::make_unique<CampaignWorker>(*this, basis, factory);
+      };
+      return [this, fall_back, worker = std::make_shared<ThreadWorker<CampaignWorker>>(make, fall_back)](
                  std::int64_t key) -> LoopResult {
-        const ExperimentOutcome outcome = worker->run(key);
-        if (fall_back && needs_ipopt(outcome.record))
+        const auto outcome = worker->run([key](CampaignWorker& each) { return each.run(key); });
+        if (!outcome || (fall_back && outcome->record.status == ExperimentStatus::failed))
           return {.bytes = "", .unfinished = true};
-        LoopResult result = this->result(key, outcome);
-        result.unfinished = !outcome.samples.empty();
+        LoopResult result = this->result(key, *outcome);
+        result.unfinished = !outcome->samples.empty();
         return result;
       };
     };
   if (!in_threads || fall_back || audited_share(study_, options_) > 0.0)
-    work.process = [this, worker = std::make_shared<CampaignWorker>(*this, basis, options_.solver)](
-                       std::int64_t key, const std::string& begun) {
-      ExperimentOutcome outcome = begun.empty() ? worker->run(key) : bytes(key).from_bytes(begun);
-      worker->experiments.audit(outcome);
-      return result(key, outcome);
-    };
+    work.process =
+        [this, worker = std::make_shared<CampaignWorker>(*this, basis, qp_solver_factory(options_.solver))](
+            std::int64_t key, const std::string& begun) {
+          ExperimentOutcome outcome = begun.empty() ? worker->run(key) : bytes(key).from_bytes(begun);
+          worker->experiments.audit(outcome);
+          return result(key, outcome);
+        };
   work.lost = [this, warn](std::int64_t key, const std::string& begun, const std::string& why,
                            bool again) -> std::optional<LoopResult> {
     ExperimentOutcome outcome;

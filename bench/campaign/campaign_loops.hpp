@@ -34,10 +34,6 @@ RunOptions calibration_options(RunOptions options);
 /// work. Throws InputError for threads that the solver does not bear.
 bool runs_in_threads(const Study& study, const RunOptions& options);
 
-/// Whether the solver `auto` runs an experiment, which was run by the active-set method, as a whole once more
-/// with Ipopt to fall back on: some answer was not certified.
-bool needs_ipopt(const ExperimentRecord& record);
-
 /// The loops of a campaign, its experiments and its calibration loops: how they are run, what is kept of
 /// them, and how that becomes records again.
 class CampaignLoops {

@@ -12,6 +12,7 @@
 #include "base/system/program_trust.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/execution/experiment_work.hpp"
+#include "bench/execution/thread_worker.hpp"
 #include "results/archive/record_bytes.hpp"
 #include "solvers/qp_solver_factory.hpp"
 
@@ -66,14 +67,14 @@ class RecordsInTurn {
 
 /// What one thread or process works with.
 struct LoopRunners {
-  LoopRunners(const RevisitedLoops& loops, const std::string& solver)
-      : experiments(loops.study, context(loops, solver), loops.methods) {
+  LoopRunners(const RevisitedLoops& loops, const QpSolverFactory& factory)
+      : experiments(loops.study, context(loops, factory), loops.methods) {
     if (loops.calibration != nullptr)
-      calibration.emplace(*loops.calibration, context(loops, solver), loops.methods);
+      calibration.emplace(*loops.calibration, context(loops, factory), loops.methods);
   }
 
-  static AssessmentContext context(const RevisitedLoops& loops, const std::string& solver) {
-    return assessment_context(loops.campaign.study, loops.campaign.basis, qp_solver_factory(solver));
+  static AssessmentContext context(const RevisitedLoops& loops, const QpSolverFactory& factory) {
+    return assessment_context(loops.campaign.study, loops.campaign.basis, factory);
   }
 
   ExperimentRunner experiments;
@@ -95,12 +96,14 @@ class Revisit {
                   .on_done = hooks.on_done,
                   .on_warning = hooks.on_warning};
     work.thread = [this] {
-      return [this, runners = std::make_shared<LoopRunners>(loops_, "active-set")](std::int64_t key) {
-        return in_thread(key, *runners);
+      const auto make = [this](const QpSolverFactory& factory) {
+        return std::make_unique<LoopRunners>(loops_, factory);
       };
+      return [this, runners = std::make_shared<ThreadWorker<LoopRunners>>(make, has_processes_)](
+                 std::int64_t key) { return in_thread(key, *runners); };
     };
-    if (solver_ != "active-set")
-      work.process = [this, runners = std::make_shared<LoopRunners>(loops_, solver_)](
+    if (has_processes_)
+      work.process = [this, runners = std::make_shared<LoopRunners>(loops_, qp_solver_factory(solver_))](
                          std::int64_t key, const std::string& begun) {
         return in_process(key, begun, *runners);
       };
@@ -126,25 +129,35 @@ class Revisit {
     return indices;
   }
 
-  LoopResult in_thread(std::int64_t key, LoopRunners& runners) {
+  LoopResult in_thread(std::int64_t key, ThreadWorker<LoopRunners>& runners) {
     const LoopPlace place = loops_.place(key);
-    LoopResult for_process{.bytes = "", .unfinished = true};
     if (place.of_calibration) {
-      if (by_ipopt_alone_)
-        return for_process;
-      ExperimentRecord record = runners.calibration->run(place.index, loops_.calibration_store);
-      return solver_ != "active-set" && needs_ipopt(record)
-                 ? for_process
-                 : loops_.make(key, *runners.calibration, std::move(record));
+      std::optional<LoopResult> result;
+      if (!by_ipopt_alone_)
+        result = runners.run([&](LoopRunners& each) { return calibrated(key, place, each); });
+      return result ? *std::move(result) : LoopResult{.bytes = "", .unfinished = true};
     }
     ExperimentRecord record = records_.get(place.index);
     record.assessments.clear();
-    const bool by_ipopt = by_ipopt_alone_ || record.solver.fallbacks > 0;
-    LoopResult result = by_ipopt && runners.experiments.runs_loops(record)
-                            ? LoopResult{.bytes = bytes_.to_bytes(record), .unfinished = true}
-                            : loops_.make(key, runners.experiments, std::move(record));
+    const std::optional<LoopResult> result = runners.run([&](LoopRunners& each) -> LoopResult {
+      if (by_ipopt_alone_ && each.experiments.runs_loops(record))
+        return for_process(record);
+      return loops_.make(key, each.experiments, record);
+    });
     records_.drop(place.index);
-    return result;
+    return result ? *result : for_process(record);
+  }
+
+  LoopResult for_process(const ExperimentRecord& record) const {
+    return {.bytes = bytes_.to_bytes(record), .unfinished = true};
+  }
+
+  /// One that failed may have needed Ipopt.
+  LoopResult calibrated(std::int64_t key, const LoopPlace& place, LoopRunners& runners) const {
+    ExperimentRecord record = runners.calibration->run(place.index, loops_.calibration_store);
+    return has_processes_ && record.status == ExperimentStatus::failed
+               ? LoopResult{.bytes = "", .unfinished = true}
+               : loops_.make(key, *runners.calibration, std::move(record));
   }
 
   LoopResult in_process(std::int64_t key, const std::string& begun, LoopRunners& runners) const {
@@ -156,6 +169,7 @@ class Revisit {
 
   const RevisitedLoops& loops_;
   std::string solver_;
+  bool has_processes_ = solver_ != "active-set";
   bool by_ipopt_alone_ = solver_ != "auto" && solver_ != "active-set";
   RecordBytes bytes_;  ///< without answers, which nobody asks for again
   RecordsInTurn records_;

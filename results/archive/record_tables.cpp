@@ -591,7 +591,7 @@ RecordTable perturbed(const Study& study) {
 }
 
 // A member more in one of these and this does not compile: it is then to be added to a table above. Not in
-// one is `uncertified`: what the execution goes by that has just made the record.
+// one is `uncertified`, which no archive keeps.
 [[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
                                                  const LoopRecord& loop, const LoopTruth& truth,
                                                  const SolverStatistics& statistics) {
