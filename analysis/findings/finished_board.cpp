@@ -18,10 +18,10 @@ std::size_t loops_that_differ(const CellScores& one, const CellScores& other) {
 
 /// What a method of the finished board said, of the loops whose truth is the same in both.
 MethodScores on_same_loops(const CellScores& cell, const CellScores& theirs, const MethodScores& scores) {
-  std::string outcomes = scores.outcomes;
+  LoopOutcomes outcomes = scores.outcomes;
   for (std::size_t i = 0; i < outcomes.size(); ++i)
     if (cell.truths[i] != theirs.truths[i])
-      outcomes[i] = kNoLoop;
+      outcomes[i].reset();
   MethodScores same = scores_of_outcomes(cell, std::move(outcomes), scores.scope);
   same.reason = scores.reason;
   same.estimates = scores.estimates;
@@ -75,7 +75,7 @@ JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own,
     std::vector<MethodScores> scores;
     for (const std::size_t place : places)
       scores.push_back(same ? on_same_loops(cell, *theirs, theirs->methods[place])
-                            : scores_of_outcomes(cell, "", {}));
+                            : scores_of_outcomes(cell, {}, {}));
     std::move(cell.methods.begin(), cell.methods.end(), std::back_inserter(scores));
     cell.methods = std::move(scores);
   }

@@ -1,7 +1,6 @@
 #include "analysis/findings/leaderboard.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -14,27 +13,9 @@
 namespace mpm {
 namespace {
 
-constexpr std::array kScores{
-    LeaderboardScore{"answered", "verdict given"},
-    LeaderboardScore{"detected_impact", "faults with an impact, flagged"},
-    LeaderboardScore{"power_05_impact", "faults with an impact, flagged at 5 % false alarms"},
-    LeaderboardScore{"false_alarm_healthy", "healthy loops, flagged", true},
-    LeaderboardScore{"false_alarm_calibrated", "healthy loops, flagged at the calibrated threshold", true},
-    LeaderboardScore{"located", "flagged, the affected CV named"},
-    LeaderboardScore{"source", "flagged, the right source named"},
-    LeaderboardScore{"source_all", "all faults, the right source named"},
-};
-
-const MethodRateInfo* info_of(std::string_view name) {
-  const auto infos = method_rate_infos();
-  const auto found = std::find_if(infos.begin(), infos.end(),
-                                  [name](const MethodRateInfo& info) { return info.name == name; });
-  return found == infos.end() ? nullptr : &*found;
-}
-
-/// The value of a rate that was counted on some loop; none otherwise.
-bool at_least(const Rate* rate, double least) {
-  return rate != nullptr && rate->total > 0 && rate->value >= least;
+/// Of a rate that was counted on some loop.
+bool at_least(const Rate& rate, double least) {
+  return rate.total > 0 && rate.value >= least;
 }
 
 using Belongs = std::function<bool(const CellScores&)>;
@@ -42,29 +23,31 @@ using Belongs = std::function<bool(const CellScores&)>;
 PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, double confidence,
                   const Belongs& belongs) {
   PooledScores pooled;
-  const auto infos = method_rate_infos();
-  std::vector<std::vector<std::vector<ClusterCount>>> strata(infos.size());  // the worlds of each cell
-  std::vector<std::vector<std::vector<ClusterSum>>> of_estimates(method_estimate_infos().size());
+  std::vector<const MethodScores*> of_cells;
   for (const CellScores& cell : cells) {
     if (!belongs(cell) || !cell.trouble.empty())
       continue;
-    const MethodScores& scores = cell.methods[method];
+    const MethodScores& scores = *of_cells.emplace_back(&cell.methods[method]);
     ++pooled.cells;
-    const Rate* const answered = scores.of("answered");
-    pooled.answering_cells += answered != nullptr && answered->hits > 0 ? 1 : 0;
+    pooled.answering_cells += scores["answered"].hits > 0 ? 1 : 0;
     if (pooled.reason.empty())
       pooled.reason = scores.reason;
-    for (std::size_t i = 0; i < infos.size(); ++i)
-      strata[i].push_back(scores.rates[i].clusters.empty()
-                              ? std::vector<ClusterCount>{{scores.rates[i].hits, scores.rates[i].total}}
-                              : scores.rates[i].clusters);
-    for (std::size_t i = 0; i < scores.estimates.size(); ++i)
-      of_estimates[i].push_back(scores.estimates[i].clusters);
   }
-  for (std::size_t i = 0; i < infos.size(); ++i)
-    pooled.rates.push_back(clustered_rate(strata[i], confidence));
-  for (const std::vector<std::vector<ClusterSum>>& cells_of_one : of_estimates)
-    pooled.estimates.push_back(clustered_mean(cells_of_one, confidence));
+  for (const RateRow& row : rate_rows()) {
+    std::vector<std::vector<ClusterCount>> strata;  // the worlds of each cell
+    for (const MethodScores* const scores : of_cells) {
+      const Rate& rate = scores->rates.of(row);
+      strata.push_back(rate.clusters.empty() ? std::vector<ClusterCount>{{rate.hits, rate.total}}
+                                             : rate.clusters);
+    }
+    pooled.rates.of(row) = clustered_rate(strata, confidence);
+  }
+  for (const EstimateRow& row : estimate_rows()) {
+    std::vector<std::vector<ClusterSum>> strata;
+    for (const MethodScores* const scores : of_cells)
+      strata.push_back(scores->estimates.of(row).clusters);
+    pooled.estimates.of(row) = clustered_mean(strata, confidence);
+  }
   return pooled;
 }
 
@@ -84,21 +67,11 @@ std::vector<SuiteAxis> used(const std::vector<SuiteAxis>& axis, std::vector<Cell
   return kept;
 }
 
-MethodScores scores_of(const MethodRates& of) {
-  MethodScores scores{.reason = of.reason, .failed = of.failures.failed, .rates = {}};
-  for (const MethodRateInfo& info : method_rate_infos())
-    scores.rates.push_back(of.*info.rate);
-  for (const MethodEstimateInfo& info : method_estimate_infos())
-    scores.estimates.push_back(of.*info.estimate);
-  return scores;
-}
-
 void add_shares(const PooledScores& reference, PooledScores& scores) {
-  for (const LeaderboardScore& score : leaderboard_scores()) {
-    const Rate* const reached = scores.of(score.rate);
-    const Rate* const possible = reference.of(score.rate);
-    const bool counted = !score.low_is_good && reached->total > 0 && possible->hits > 0;
-    scores.shares_of_ceiling.push_back(counted ? reached->value / possible->value : kNaN);
+  for (const std::string_view name : leaderboard_rates()) {
+    const Rate &reached = scores[name], &possible = reference[name];
+    const bool counted = !row_of(rate_rows(), name).low_is_good && reached.total > 0 && possible.hits > 0;
+    scores.shares_of_ceiling.push_back(counted ? reached.value / possible.value : kNaN);
   }
 }
 
@@ -116,19 +89,6 @@ void add_shares(Leaderboard& board) {
 
 }  // namespace
 
-const Rate* MethodScores::of(std::string_view name) const {
-  const MethodRateInfo* const info = info_of(name);
-  return info == nullptr ? nullptr : &rates[static_cast<std::size_t>(info - method_rate_infos().data())];
-}
-
-Estimate MethodScores::estimate(std::string_view name) const {
-  const auto infos = method_estimate_infos();
-  for (std::size_t i = 0; i < estimates.size(); ++i)
-    if (infos[i].name == name)
-      return estimates[i];
-  return {};
-}
-
 CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
   CellScores scores{.plant = cell.plant,
                     .family = cell.family,
@@ -141,59 +101,55 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
                     .infeasible = findings.infeasible.hits,
                     .truths = findings.truths,
                     .worlds = findings.worlds};
-  for (const MethodFindings& method : findings.methods) {
-    MethodScores& of_method = scores.methods.emplace_back(scores_of(method.rates));
-    of_method.outcomes = method.rates.outcomes;
-    of_method.scope = outcome_scope(cell.study, method.form->method(), method.rates.thresholds);
-  }
+  for (const MethodFindings& method : findings.methods)
+    scores.methods.push_back(
+        {.reason = method.rates.reason,
+         .failed = method.rates.failures.failed,
+         .rates = method.rates.rates,
+         .estimates = method.rates.estimates,
+         .outcomes = method.rates.outcomes,
+         .scope = outcome_scope(cell.study, method.form->method(), method.rates.thresholds)});
   return scores;
 }
 
-MethodScores scores_of_outcomes(const CellScores& cell, std::string outcomes, const OutcomeScope& scope) {
-  OutcomeCounts counts;
+MethodScores scores_of_outcomes(const CellScores& cell, LoopOutcomes outcomes, const OutcomeScope& scope) {
+  RateCounts counts;
   for (std::size_t i = 0; i < outcomes.size(); ++i)
-    if (outcomes[i] != kNoLoop)
-      counts.add(scope, cell.worlds[i], *fault_truth(cell.truths[i]), *loop_outcome(outcomes[i]));
-  MethodRates rates{};
-  counts.put(rates, kBoardConfidence);
-  MethodScores scores = scores_of(rates);
-  scores.outcomes = std::move(outcomes);
-  scores.scope = scope;
-  return scores;
+    if (outcomes[i])
+      counts.add({scope, *cell.truths[i], *outcomes[i]}, cell.worlds[i]);
+  return {
+      .reason = "", .rates = counts.rates(kBoardConfidence), .outcomes = std::move(outcomes), .scope = scope};
 }
 
 bool PooledScores::answers_in_part() const {
-  const Rate* const answered = of("answered");
-  return answered != nullptr && answered->hits > 0 && answered->value < kFewestAnswers;
+  const Rate& answered = rates["answered"];
+  return answered.hits > 0 && answered.value < kFewestAnswers;
 }
 
 bool PooledScores::too_many_false_alarms() const {
-  const Rate* const alarms = of("false_alarm_healthy");
-  return alarms != nullptr && alarms->total > 0 && alarms->interval.lower > kMostFalseAlarms;
+  const Rate& alarms = rates["false_alarm_healthy"];
+  return alarms.total > 0 && alarms.interval.lower > kMostFalseAlarms;
 }
 
 bool passes(const PooledScores& scores, LeaderboardTask task) {
-  const Rate* const alarms = scores.of("false_alarm_healthy");
-  const bool quiet = alarms != nullptr && alarms->total > 0 && alarms->value <= kPassingFalseAlarms;
-  if (!quiet || !at_least(scores.of("answered"), kFewestAnswers))
+  const Rate& alarms = scores["false_alarm_healthy"];
+  const bool quiet = alarms.total > 0 && alarms.value <= kPassingFalseAlarms;
+  if (!quiet || !at_least(scores["answered"], kFewestAnswers))
     return false;
   switch (task) {
     case LeaderboardTask::detection:
-      return at_least(scores.of("detected_impact"), kPassingShare);
+      return at_least(scores["detected_impact"], kPassingShare);
     case LeaderboardTask::location:
-      return at_least(scores.of("located"), kPassingShare);
+      return at_least(scores["located"], kPassingShare);
     case LeaderboardTask::source:
-      return at_least(scores.of("source_all"), kPassingShare);
+      return at_least(scores["source_all"], kPassingShare);
   }
   return false;
 }
 
-std::vector<LeaderboardScore> leaderboard_scores() {
-  std::vector<LeaderboardScore> known;
-  for (const LeaderboardScore& score : kScores)
-    if (info_of(score.rate) != nullptr)
-      known.push_back(score);
-  return known;
+std::vector<std::string_view> leaderboard_rates() {
+  return {"answered", "detected_impact", "power_05_impact", "false_alarm_healthy", "false_alarm_calibrated",
+          "located",  "source",          "source_all"};
 }
 
 bool Leaderboard::in_worlds() const {
@@ -215,11 +171,11 @@ std::vector<RankedMethod> ranking(const Leaderboard& board) {
     if (board.methods[method] != kReferenceMethod)
       ranked.push_back({method});
   const auto source = [&board](const RankedMethod& each) {
-    const Rate* const rate = board.overall[each.method].of(kRankingSource);
-    return rate != nullptr && rate->total > 0 ? rate->value : kNaN;
+    const Rate& rate = board.overall[each.method][kRankingSource];
+    return rate.total > 0 ? rate.value : kNaN;
   };
   const auto repair = [&board](const RankedMethod& each) {
-    return board.overall[each.method].estimate(kRankingRepair).value;
+    return board.overall[each.method].estimates[kRankingRepair].value;
   };
   const auto rank = [&ranked](const RankedMethod& one, const auto& value) -> std::optional<int> {
     if (std::isnan(value(one)))

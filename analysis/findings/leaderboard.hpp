@@ -24,18 +24,14 @@ inline constexpr double kBoardConfidence = 0.95;
 struct MethodScores {
   std::string reason;       ///< why there was no verdict on the first loop without one; empty: on every loop
   std::int64_t failed = 0;  ///< loops on which it was asked and failed
-  std::vector<Rate> rates;  ///< in the order of method_rate_infos()
-  /// In the order of method_estimate_infos(). Of several cells only means that keep their clusters: medians
-  /// cannot be added up.
-  std::vector<Estimate> estimates = {};
+  Rates rates = Rates();
+  /// Of several cells only means that keep their clusters: medians cannot be added up.
+  Estimates estimates = {};
   /// Of one cell: what it said of each loop (MethodRates::outcomes), and which rates that decides.
-  std::string outcomes = {};
+  LoopOutcomes outcomes = {};
   OutcomeScope scope = {};
 
-  /// The rate of this name; null when there is none.
-  const Rate* of(std::string_view name) const;
-  /// The estimate of this name; of nothing when there is none.
-  Estimate estimate(std::string_view name) const;
+  const Rate& operator[](std::string_view rate) const { return rates[rate]; }
 };
 
 /// What a cell of a suite gave.
@@ -50,7 +46,7 @@ struct CellScores {
   std::int64_t experiments = 0;
   std::int64_t failed = 0;
   std::int64_t infeasible = 0;
-  std::string truths = {};                 ///< of its loops, as in StudyFindings
+  LoopTruths truths = {};                  ///< of its loops, as in StudyFindings
   std::vector<int> worlds = {};            ///< the same
   std::vector<MethodScores> methods = {};  ///< in the order of the leaderboard; empty in trouble
 };
@@ -59,16 +55,15 @@ struct CellScores {
 CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings);
 
 /// The scores that the outcomes of a method on the loops of a cell decide, with the loops of `cell` for
-/// truth; its other rates and all estimates are of nothing. Errors: none; the letters must be those of a
-/// truth and an outcome, as many as loops.
-MethodScores scores_of_outcomes(const CellScores& cell, std::string outcomes, const OutcomeScope& scope);
+/// truth, as many as outcomes; its estimates are of nothing.
+MethodScores scores_of_outcomes(const CellScores& cell, LoopOutcomes outcomes, const OutcomeScope& scope);
 
 /// A method on all cells of a family, or of a plant: hits and loops of the cells are added up, so that each
 /// loop counts once, and Wilson's interval is taken of the sums.
 struct PooledScores : MethodScores {
   std::size_t cells = 0;            ///< that were run
   std::size_t answering_cells = 0;  ///< on some loop of which it gave a verdict
-  /// Each of leaderboard_scores() over that of the reference on the same cells; NaN where one of the two was
+  /// Each of leaderboard_rates() over that of the reference on the same cells; NaN where one of the two was
   /// not counted, and where low is good. Empty where there is no reference: it was not asked, or the family
   /// is not its own.
   std::vector<double> shares_of_ceiling = {};
@@ -108,15 +103,8 @@ bool passes(const PooledScores& scores, LeaderboardTask task);
 inline constexpr double kPassingShare = 0.8;
 inline constexpr double kPassingFalseAlarms = 0.1;
 
-/// A number of the leaderboard.
-struct LeaderboardScore {
-  std::string_view rate;   ///< name in method_rate_infos()
-  std::string_view title;  ///< for people
-  bool low_is_good = false;
-};
-
-/// Those that method_rate_infos() knows, in the order in which people read them.
-std::vector<LeaderboardScore> leaderboard_scores();
+/// The rates that a leaderboard has by family and by plant, in the order in which people read them.
+std::vector<std::string_view> leaderboard_rates();
 
 /// What the methods of a suite of worlds are ranked by, at equal false alarms: at the threshold that is
 /// calibrated for 5 % of them.

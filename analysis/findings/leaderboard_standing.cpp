@@ -8,35 +8,20 @@
 namespace mpm {
 namespace {
 
-enum class Asked { source, power };
-
-/// Is the loop one that the rate counts, and is it a hit? None: it is not counted.
-std::optional<bool> hit_or_miss(Asked what, const FaultTruth& truth, const LoopOutcome& said) {
-  if (!truth.faulty() || !truth.impact || (what == Asked::power && !said.answered))
-    return std::nullopt;
-  return said.above_05 && (what == Asked::power || said.right_source);
-}
-
-/// Can the method have the rate on the loops of this cell?
-bool has_rate(Asked what, const MethodScores& scores) {
-  return scores.scope.at_05 && (what == Asked::power || scores.scope.tells_sources);
-}
-
 /// Both on the loops of all cells: the other one first.
-BoardDuel duel(const Leaderboard& board, Asked what, std::size_t method, std::size_t other) {
+BoardDuel duel(const Leaderboard& board, const RateRow& rate, std::size_t method, std::size_t other) {
   std::vector<PairedCounts> clusters;
   for (const CellScores& cell : board.cells) {
-    if (!cell.trouble.empty() || !has_rate(what, cell.methods[method]) ||
-        !has_rate(what, cell.methods[other]))
+    if (!cell.trouble.empty())
       continue;
-    const std::string &ours = cell.methods[method].outcomes, &theirs = cell.methods[other].outcomes;
+    const MethodScores &ours = cell.methods[method], &theirs = cell.methods[other];
     OfWorlds<PairedCounts> worlds;
-    for (std::size_t i = 0; i < std::min({ours.size(), theirs.size(), cell.truths.size()}); ++i) {
-      if (ours[i] == kNoLoop || theirs[i] == kNoLoop)
+    for (std::size_t i = 0; i < std::min({ours.outcomes.size(), theirs.outcomes.size(), cell.truths.size()});
+         ++i) {
+      if (!ours.outcomes[i] || !theirs.outcomes[i])
         continue;
-      const FaultTruth truth = *fault_truth(cell.truths[i]);
-      const auto first = hit_or_miss(what, truth, *loop_outcome(theirs[i])),
-                 second = hit_or_miss(what, truth, *loop_outcome(ours[i]));
+      const std::optional<bool> first = rate.ask({theirs.scope, *cell.truths[i], *theirs.outcomes[i]}),
+                                second = rate.ask({ours.scope, *cell.truths[i], *ours.outcomes[i]});
       if (first && second)
         worlds.of(cell.worlds[i]).add(*first, *second);
     }
@@ -67,13 +52,13 @@ int Standing::lost() const {
 }
 
 std::optional<Standing> standing_of(const Leaderboard& board, std::size_t method) {
-  const Asked what = board.in_worlds() && tells_sources(board, method) ? Asked::source : Asked::power;
   Standing standing;
   standing.method = method;
-  standing.rate = what == Asked::source ? kRankingSource : "power_05_impact";
+  standing.rate = board.in_worlds() && tells_sources(board, method) ? kRankingSource : "power_05_impact";
+  const RateRow& rate = row_of(rate_rows(), standing.rate);
   for (std::size_t other = 0; other < board.methods.size(); ++other)
     if (other != method && board.methods[other] != kReferenceMethod)
-      if (const BoardDuel found = duel(board, what, method, other); found.loops > 0)
+      if (const BoardDuel found = duel(board, rate, method, other); found.loops > 0)
         standing.duels.push_back(found);
   if (standing.duels.empty())
     return std::nullopt;

@@ -27,7 +27,7 @@ struct BoardDuel {
 /// of them.
 struct Standing {
   std::size_t method = 0;  ///< place in Leaderboard::methods
-  /// What is counted, a name in method_rate_infos(): "source_05_impact" of a method that tells sources, on a
+  /// What is counted, a name in rate_rows(): "source_05_impact" of a method that tells sources, on a
   /// board of worlds; "power_05_impact" otherwise.
   std::string_view rate = {};
   std::vector<BoardDuel> duels =

@@ -1,18 +1,16 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "analysis/experiment/experiment_record.hpp"
+#include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/calibration.hpp"
-#include "analysis/findings/world_counts.hpp"
 
-// What the rates of a leaderboard ask of a loop, and of what a method said of it: few enough facts for one
-// letter each, so that finished results can be kept, counted again, and held against those of another method
-// loop by loop.
+// What the rates of methods ask of a loop, and of what a method said of it: a few facts, so that finished
+// results can be kept, counted again, and held against those of another method loop by loop.
 
 namespace mpm {
-
-struct MethodRates;
 
 /// What is true of a loop.
 struct FaultTruth {
@@ -24,33 +22,40 @@ struct FaultTruth {
   bool operator==(const FaultTruth&) const = default;
 };
 
-/// What a method said of a loop.
+/// What a method said of a loop. A fact more is a member here, a row in outcome_facts(), and what
+/// outcome_of() puts into it.
 struct LoopOutcome {
   bool answered = false;
   bool flagged = false;
-  bool above_05 = false;      ///< its score exceeds the threshold calibrated for 5 % false alarms
-  bool above_chosen = false;  ///< that for calibration.false_alarms
-  bool right_cv = false;      ///< the CV with the largest score is the one that the fault affects
-  bool right_source = false;  ///< names_source() of the source that it would name if it flagged the loop
+  bool above_05 = false;       ///< its score exceeds the threshold calibrated for 5 % false alarms
+  bool above_chosen = false;   ///< that for calibration.false_alarms
+  bool right_cv = false;       ///< the CV with the largest score is the one that the fault affects
+  bool right_source = false;   ///< names_source() of the source that it would name if it flagged the loop
+  bool above_01 = false;       ///< its score exceeds the threshold calibrated for 1 % false alarms
+  bool above_not_mpm = false;  ///< that for 5 % among loops without a mismatch
+  bool names_source = false;   ///< named_source() is one
+  Correctness channel = {};    ///< as in Judgement, and so are the next ones
+  Correctness parameter = {};
+  Correctness size = {};
+  Correctness candidate = {};
+  Correctness window = {};  ///< a window that ends after the onset of a fault with an impact is flagged
+
+  bool operator==(const LoopOutcome&) const = default;
 };
 
-FaultTruth truth_of(const Study& study, const ExperimentRecord& record);
-LoopOutcome outcome_of(const ExperimentRecord& record, const AssessmentRecord& said,
-                       const CalibratedThresholds& thresholds);
+/// A member of LoopOutcome as a whole number.
+struct OutcomeFact {
+  unsigned bits;  ///< of this number
+  unsigned (*get)(const LoopOutcome&);
+  void (*set)(LoopOutcome&, unsigned);  ///< a number that the member cannot have becomes 0
+};
 
-/// In place of a letter: a loop that did not run to its end, which no method has looked at.
-inline constexpr char kNoLoop = '-';
+/// Every member once. Files keep them in this order: a further fact goes to the end.
+std::vector<OutcomeFact> outcome_facts();
 
-/// A letter of base64 (RFC 4648), whose bits from the lowest are: kind (3 bits, ExperimentKind), impact,
-/// one_cv.
-char letter_of(const FaultTruth& truth);
-/// The members in their order, from the lowest bit.
-char letter_of(const LoopOutcome& outcome);
-/// None for a character that no truth has.
-std::optional<FaultTruth> fault_truth(char letter);
-/// None for a character that no outcome has: what is not answered is nothing else, and a right CV is named of
-/// a flagged loop alone.
-std::optional<LoopOutcome> loop_outcome(char letter);
+/// Of a loop that did not run to its end, which no method has looked at: none.
+using LoopTruths = std::vector<std::optional<FaultTruth>>;
+using LoopOutcomes = std::vector<std::optional<LoopOutcome>>;
 
 /// What decides which rates a method can have.
 struct OutcomeScope {
@@ -59,29 +64,23 @@ struct OutcomeScope {
   bool at_05 = false;      ///< it has the threshold calibrated for 5 %
   bool at_chosen = false;  ///< that for calibration.false_alarms
   bool in_worlds = false;
+  bool at_01 = false;       ///< it has the threshold calibrated for 1 %
+  bool at_not_mpm = false;  ///< that for 5 % among loops without a mismatch
+  bool is_whole = false;    ///< all facts are known; otherwise those up to LoopOutcome::right_source
 };
 
+FaultTruth truth_of(const Study& study, const ExperimentRecord& record);
 OutcomeScope outcome_scope(const Study& study, const MethodDescription& method,
                            const CalibratedThresholds& thresholds);
+/// Can a method of this scope say this of a loop? What is not answered is nothing else, a right CV is named
+/// of a flagged loop alone, and nothing is right of what is not there.
+bool is_possible(const LoopOutcome& outcome, const FaultTruth& truth, const OutcomeScope& scope);
 
-/// Counts the rates that outcomes decide.
-class OutcomeCounts {
- public:
-  void add(const OutcomeScope& scope, int world, const FaultTruth& truth, const LoopOutcome& said);
-  /// Puts them in their places; the other rates stay as they are.
-  void put(MethodRates& rates, double confidence) const;
-  /// Is it one of these rates?
-  static bool decide(Rate MethodRates::*rate);
-
- private:
-  struct Place;
-  static const Place kPlaces[];
-
-  void add_fault(const OutcomeScope& scope, int world, const FaultTruth& truth, const LoopOutcome& said);
-
-  WorldCount answered_, detected_, detected_mpm_, detected_ud_, detected_impact_, flagged_without_impact_,
-      false_alarm_healthy_, false_alarm_tuning_, false_alarm_calibrated_, located_, source_, source_all_,
-      power_05_, power_05_impact_, source_05_impact_;
+/// A loop that a method has looked at.
+struct JudgedLoop {
+  const OutcomeScope& scope;
+  const FaultTruth& truth;
+  const LoopOutcome& said;
 };
 
 }  // namespace mpm

@@ -3,15 +3,15 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/calibration.hpp"
 #include "analysis/findings/collector.hpp"
 #include "analysis/findings/finding.hpp"
+#include "analysis/findings/rate_table.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
-#include "analysis/statistics/mcnemar.hpp"
 #include "analysis/statistics/roc.hpp"
 #include "base/enum_words.hpp"
 
@@ -28,84 +28,64 @@ struct VerdictFailures {
   void add(const VerdictFailures& more);
 };
 
-/// How often one method is right. A loop without a verdict counts in `answered` only; method_rate_infos()
-/// says what each rate counts, and method_estimate_infos() what each estimate is.
+/// What is measured of the loops that a method has looked at, from which its estimates are made.
+struct LoopMeasures;
+
+/// A number of a method that is no share of loops.
+struct EstimateRow : MethodNumber {
+  Estimate (*estimate)(const LoopMeasures&, const Study&);
+  bool has_interval = true;
+};
+
+/// Every estimate once, in the order in which people read them.
+std::span<const EstimateRow> estimate_rows();
+
+struct Estimates : RowValues<EstimateRow, Estimate> {
+  Estimates() : RowValues(estimate_rows()) {}
+};
+
+/// How often one method is right. A loop without a verdict counts only where the meaning of a rate says so.
 struct MethodRates {
   std::string
       reason;  ///< why there was no verdict on the first loop without one; empty when it always gave one
-  std::string outcomes =
-      {};  ///< a letter_of(LoopOutcome) for each record, in their order; kNoLoop: not assessed
+  LoopOutcomes outcomes = {};  ///< of the records, in their order
   VerdictFailures failures = {};
-  Rate answered = {}, detected = {}, detected_mpm = {}, detected_ud = {}, detected_impact = {},
-       flagged_without_impact = {}, false_alarm_healthy = {}, false_alarm_tuning = {}, located = {},
-       source = {}, channel = {}, channel_impact = {}, parameter_impact = {}, size_covered = {},
-       candidate = {}, source_all = {}, abstained = {};
-  // At calibrated thresholds; nothing is counted without one.
-  Rate false_alarm_calibrated = {}, power_01 = {}, power_05 = {}, power_05_impact = {}, power_05_mpm = {};
-  Rate source_05_impact = {};  // in worlds alone
-  // On moving windows; nothing is counted in a study that does not monitor.
-  Rate monitored_impact = {};
-  Estimate detection_delay = {}, false_alarms_a_day = {};
-  CalibratedThresholds thresholds;
-  RocCurve roc;       ///< of the score, loops with a fault against healthy ones
-  Interval roc_area;  ///< of roc.area; NaN when there is no curve
-  RocCurve
-      roc_impact;  ///< loops with a fault that has an impact against those with another one and healthy ones
-  Interval roc_impact_area;
-  Estimate channels_named = {}, size_error = {};
-  Estimate repair_gain_share = {}, repair_gain_share_05 = {};  // in worlds alone
-  double milliseconds;  ///< median processor time a loop, of those answered; NaN without
+  Rates rates = Rates();
+  Estimates estimates = {};
+  CalibratedThresholds thresholds = {};
+  RocCurve roc = {};       ///< of the score, loops with a fault against healthy ones
+  Interval roc_area = {};  ///< of roc.area; NaN when there is no curve
+  /// Loops with a fault that has an impact against those with another one and healthy ones.
+  RocCurve roc_impact = {};
+  Interval roc_impact_area = {};
+  double milliseconds = kNaN;  ///< median processor time a loop, of those answered; NaN without
+
+  Rate& operator[](std::string_view rate) { return rates[rate]; }
+  const Rate& operator[](std::string_view rate) const { return rates[rate]; }
 };
 
-/// Which studies have a number.
-enum class StudyFeature : std::int8_t {
-  any,
-  candidates,
-  calibration,
-  monitoring,
-  worlds,
-  calibrated_worlds,
-};
-
-/// A rate of a method under the name that text, JSON, archive, report and gates have for it. All are shares
-/// of loops.
-struct MethodRateInfo {
-  const char* name;     ///< "false_alarm_healthy"
-  const char* title;    ///< for people: "false alarms, healthy"
-  const char* meaning;  ///< which loops are looked at, and which of them count
-  Rate MethodRates::*rate;
-  StudyFeature of = StudyFeature::any;
-};
-
-/// Every rate of MethodRates once, in the order in which people read them.
-std::span<const MethodRateInfo> method_rate_infos();
-/// Those that this study can have.
-std::vector<MethodRateInfo> method_rate_infos(const Study& study);
-
-/// A number of a method that is no share of loops, under the name that text, JSON and archive have for it.
-struct MethodEstimateInfo {
-  const char* name;     ///< "size_error"
-  const char* title;    ///< for people
-  const char* meaning;  ///< which loops are looked at, and what of them is counted
-  Estimate MethodRates::*estimate;
-  bool has_interval = true;
-  StudyFeature of = StudyFeature::any;
-};
-
-/// Every estimate of MethodRates once, in the order in which people read them.
-std::span<const MethodEstimateInfo> method_estimate_infos();
-/// Those that this study can have.
-std::vector<MethodEstimateInfo> method_estimate_infos(const Study& study);
-
-/// A calibrated threshold under the name that its finding and JSON have.
-struct ThresholdInfo {
-  const char* name;     ///< "threshold_05"
-  const char* meaning;  ///< the share of which loops is above it at most
+/// A calibrated threshold; its meaning says the share of which loops is above it at most.
+struct ThresholdRow : MethodNumber {
   CalibratedThreshold CalibratedThresholds::*threshold;
 };
+std::span<const ThresholdRow> threshold_rows();
 
-/// Every threshold of CalibratedThresholds once.
-std::span<const ThresholdInfo> threshold_infos();
+/// The area under the curve of the scores against one truth.
+struct AreaRow : MethodNumber {
+  RocCurve MethodRates::*curve;
+  Interval MethodRates::*interval;
+};
+std::span<const AreaRow> area_rows();
+
+inline constexpr MethodNumber kRunTime{"milliseconds", "ms a loop",
+                                            "median processor time of its verdict on a loop, in ms", true};
+
+/// Every number of a method once.
+std::vector<MethodNumber> method_numbers();
+/// The one of this name; throws std::out_of_range when there is none.
+MethodNumber method_number(std::string_view name);
+/// Its heading.
+std::string heading_of(std::string_view name);
 
 /// The rates of one method; `method` is its place in the assessments of each record and of each loop of
 /// `calibration`, which may have none. `study` must outlive the collector.
@@ -132,8 +112,11 @@ bool answers_and_detects(const MethodRates& rates);
 Finding method_finding(const std::string& method, const std::string& name, const std::string& label,
                        const std::string& meaning);
 
-/// Its rows: "compare.METHOD.RATE" for each rate that the study can have, "compare.METHOD.roc_area",
-/// "compare.METHOD.roc_area_impact", the estimates, and in a study with a calibration the thresholds.
+/// The row "compare.METHOD.NAME" of this number, without a value; `prefix` stands before the name.
+Finding method_finding(const std::string& method, const MethodNumber& number, const std::string& prefix = "");
+
+/// Its rows: of each rate that the study can have, of the areas, the estimates, and in a study with a
+/// calibration the thresholds.
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method);
 
 /// How the false alarms of a method agree with what it states of them.
@@ -150,18 +133,5 @@ inline constexpr auto kWords<FalseAlarmMark> = word_list("", "fewer", "more");
 inline constexpr double kUsualFalseAlarms = 0.05;
 
 FalseAlarmMark false_alarm_mark(const MethodDescription& method, const MethodRates& rates);
-
-/// Two methods on the same loops: is one right where the other is wrong? Counted are the loops that both gave
-/// a verdict on. In worlds the test is clustered_mcnemar(), worlds being the clusters.
-struct MethodPair {
-  FlagTruth truth;
-  std::size_t first, second;  ///< places in the assessments of each record
-  std::int64_t loops = 0;
-  McNemarTest test;     ///< lost: right by the first alone
-  double p_holm = 1.0;  ///< test.p_two_sided corrected for all pairs of this truth that have loops
-};
-
-/// Every pair once for each truth, all of the first truth first. `study` must outlive the collector.
-Collector<std::vector<MethodPair>> pair_collector(const Study& study, std::size_t methods);
 
 }  // namespace mpm

@@ -106,25 +106,24 @@ struct MethodRun {
 /// that of all.
 class PairedRates {
  public:
-  PairedRates() : sums_(method_rate_infos().size()) {}
-
   void add(int world, const MethodRates& before, const MethodRates& now) {
-    const std::span<const MethodRateInfo> infos = method_rate_infos();
-    for (std::size_t i = 0; i < infos.size(); ++i) {
-      const Rate &was = before.*infos[i].rate, &is = now.*infos[i].rate;
-      sums_[i].before.add(world, {was.hits, was.total});
-      sums_[i].now.add(world, {is.hits, is.total});
+    for (const RateRow& row : rate_rows()) {
+      const Rate &was = before.rates.of(row), &is = now.rates.of(row);
+      Sums& sums = sums_.of(row);
+      sums.before.add(world, {was.hits, was.total});
+      sums.now.add(world, {is.hits, is.total});
       if (was.total == 1 && is.total == 1)
-        sums_[i].both.add(world, was.hits == 1, is.hits == 1);
+        sums.both.add(world, was.hits == 1, is.hits == 1);
     }
   }
 
   std::vector<RateChange> changes(double confidence) const {
-    const std::span<const MethodRateInfo> infos = method_rate_infos();
     std::vector<RateChange> changes;
-    for (std::size_t i = 0; i < infos.size(); ++i)
-      changes.push_back({&infos[i], sums_[i].before.rate(confidence), sums_[i].now.rate(confidence),
-                         sums_[i].both.sum(), sums_[i].both.difference(confidence)});
+    for (const RateRow& row : rate_rows()) {
+      const Sums& sums = sums_.of(row);
+      changes.push_back({&row, sums.before.rate(confidence), sums.now.rate(confidence), sums.both.sum(),
+                         sums.both.difference(confidence)});
+    }
     return changes;
   }
 
@@ -134,14 +133,14 @@ class PairedRates {
     WorldPairs both;
   };
 
-  std::vector<Sums> sums_;
+  RowValues<RateRow, Sums> sums_{rate_rows()};
 };
 
 std::vector<RateChange> unpaired_rates(const MethodRates& before, const MethodRates& now, double confidence) {
   std::vector<RateChange> changes;
-  for (const MethodRateInfo& info : method_rate_infos()) {
-    const Rate &was = before.*info.rate, &is = now.*info.rate;
-    changes.push_back({&info, was, is, {}, independent_difference(was, is, confidence)});
+  for (const RateRow& row : rate_rows()) {
+    const Rate &was = before.rates.of(row), &is = now.rates.of(row);
+    changes.push_back({&row, was, is, {}, independent_difference(was, is, confidence)});
   }
   return changes;
 }

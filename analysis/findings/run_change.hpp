@@ -40,7 +40,7 @@ RunPairing pair_runs(const StudyRun& before, const StudyRun& now);
 
 /// How a rate of a method changed. Of paired runs the loops in common alone are looked at.
 struct RateChange {
-  const MethodRateInfo* info;
+  const RateRow* row;
   Rate before, now;            ///< each over all loops that it counts in this run
   PairedCounts counts;         ///< of paired runs: over the loops that it counts in both
   ShareDifference difference;  ///< over these; of unpaired runs: of `before` and `now` as independent

@@ -180,7 +180,7 @@ StudyFindings study_findings(const Study& study, const AssessmentForms& forms, c
     findings.add(record);
     const bool assessed = std::any_of(record.assessments.begin(), record.assessments.end(), looked_at);
     findings.assessed += assessed ? 1 : 0;
-    findings.truths += assessed ? letter_of(truth_of(study, record)) : kNoLoop;
+    findings.truths.push_back(assessed ? std::optional(truth_of(study, record)) : std::nullopt);
     findings.worlds.push_back(record.draw.world);
     for (const MethodCollector& method : methods)
       method.add(record);

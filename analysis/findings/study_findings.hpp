@@ -13,6 +13,7 @@
 #include "analysis/findings/false_alarms.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/findings/kind_findings.hpp"
+#include "analysis/findings/method_pairs.hpp"
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/findings/s0_perturbation_curves.hpp"
 
@@ -31,9 +32,8 @@ struct MethodFindings {
 /// All that a study reports, computed once, each number with its uncertainty.
 struct StudyFindings : Endings {
   std::int64_t assessed = 0;  ///< loops that some method has looked at
-  /// Of each record in their order: a letter_of(FaultTruth), kNoLoop where no method has looked at it, and
-  /// its world (draw.world).
-  std::string truths;
+  /// Of each record in their order, none where no method has looked at it, and its world (draw.world).
+  LoopTruths truths;
   std::vector<int> worlds;
   std::vector<MethodFindings> methods;      ///< in the order of the study
   std::vector<MethodPair> pairs;            ///< of all methods

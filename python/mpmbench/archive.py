@@ -12,6 +12,9 @@ from .program import run as run_program, temporary
 from .results import Comparison, Repair, rate_table
 from .signals import SIGNALS, Loop
 
+# The rates on the page of an archive, of those that it has.
+SHOWN = ["answered", "false_alarm_healthy", "detected_impact", "power_05_impact", "located", "source_all"]
+
 
 class Archive:
     """An archive that `mpmbench run` has written (docs/file_format.md). Opening one starts no program.
@@ -159,7 +162,13 @@ class Archive:
         title, of = (html.escape(str(text)) for text in (
             self.attributes["title"], f"{os.fspath(self.path.name)}: {', '.join(f'{n} {kind}' for kind, n in kinds.items())}; "
                                       f"seed {self.attributes['master_seed']}"))
-        return f"<p><b>{title}</b><br>{of}</p>" + rate_table(self._intervals(), self.methods)
+        return f"<p><b>{title}</b><br>{of}</p>" + rate_table(self._intervals(), self._headings(), self.methods)
+
+    def _headings(self):
+        """Of the rates that the page of the archive shows; earlier archives have names alone."""
+        found = self.findings.get("heading", {})
+        return {name: next((found[f"compare.{method}.{name}"] for method in self.methods
+                            if f"compare.{method}.{name}" in found), name) for name in SHOWN}
 
     def _intervals(self):
         found = self.findings

@@ -1,5 +1,7 @@
 """Figures by matplotlib. Each function returns a Figure, which a notebook shows and savefig() writes."""
 
+import textwrap
+
 import numpy
 
 MEASURED, MODEL, SETPOINT, MOVES = "#0072b2", "#d55e00", "#009e73", "#333333"
@@ -46,14 +48,11 @@ def loop(loop):
     return figure
 
 
-def board(rated, headings, rates=None, highlight=()):
-    """Dots with whiskers: a row a method, a panel a rate; those with a heading unless told."""
-    found = rated.intervals
-    if rates is None:
-        rates = [name for name in headings if name != "answered" and name in found.index.get_level_values("rate")
-                 and found.xs(name, level="rate")["value"].notna().any()]
-        if "power_05_impact" in rates:
-            rates.remove("detected_impact")
+def board(rated, rates, highlight=()):
+    """Dots with whiskers: a row a method, a panel for each of these rates that some method has."""
+    found, headings = rated.intervals, rated.json["headings"]
+    rates = [name for name in rates if name in found.index.get_level_values("rate")
+             and found.xs(name, level="rate")["value"].notna().any()]
     highlight = [highlight] if isinstance(highlight, str) else highlight
     methods = rated.methods[::-1]
     figure, axes = new(1, len(rates), size=(1.2 + 1.75 * len(rates), 0.9 + 0.24 * len(methods)), sharey=True)
@@ -69,7 +68,7 @@ def board(rated, headings, rates=None, highlight=()):
         axis.set_xticks([0, 50, 100])
         axis.grid(axis="both", color="#e3e6ea", linewidth=0.7)
         axis.set_axisbelow(True)
-        axis.set_title(headings.get(rate, rate).replace(" at ", "\nat "), fontsize=9)
+        axis.set_title(textwrap.fill(headings[rate], 18), fontsize=9)
         axis.set_xlabel("% of loops", fontsize=8)
     axes[0, 0].set_yticks(range(len(methods)), methods, fontsize=8)
     for label in axes[0, 0].get_yticklabels():

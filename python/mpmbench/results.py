@@ -8,10 +8,6 @@ import statistics
 from . import figures
 
 # In the order of the table: name, heading.
-SHOWN = {"answered": "answers", "false_alarm_healthy": "false alarms", "detected_impact": "impact found",
-         "power_05_impact": "impact found at 5 % false alarms", "located": "right CV", "source_all": "right source"}
-
-
 def percent(rate):
     """93 (91 to 94), or nothing where no loop was looked at."""
     value, lower, upper = (rate[key] for key in ("value", "lower", "upper"))
@@ -20,11 +16,11 @@ def percent(rate):
     return f"{100 * value:.0f} ({100 * lower:.0f} to {100 * upper:.0f})"
 
 
-def rate_table(rates, methods, own=()):
-    """HTML of {method: {rate: {value, lower, upper}}}: the most important rates that some method has."""
-    shown = {name: heading for name, heading in SHOWN.items()
+def rate_table(rates, headings, methods, own=()):
+    """HTML of {method: {rate: {value, lower, upper}}}: those with a heading that some method has."""
+    shown = {name: heading for name, heading in headings.items()
              if any(percent(rates[method][name]) for method in methods if name in rates[method])}
-    head = "".join(f"<th>{heading}</th>" for heading in ["method", *shown.values()])
+    head = "".join(f"<th>{html.escape(heading)}</th>" for heading in ["Method", *shown.values()])
     rows = ""
     for method in methods:
         name = html.escape(method)
@@ -50,6 +46,11 @@ class Rated:
     def methods(self):
         return [method["name"] for method in self.json["methods"]]
 
+    @property
+    def headings(self):
+        """The numbers by which people compare methods, {name: heading}, as the tables of the program have them."""
+        return {name: self.json["headings"][name] for name in self.json["columns"]}
+
     @functools.cached_property
     def intervals(self):
         """pandas DataFrame, one row a method and rate: value, lower, upper, hits, total."""
@@ -71,10 +72,11 @@ class Rated:
     def plot(self, rates=None, highlight=None):
         """Rates of all methods with their intervals, as a figure of matplotlib; `highlight`: names, own methods unless
         told."""
-        return figures.board(self, SHOWN, rates, self.own if highlight is None else highlight)
+        return figures.board(self, rates or list(self.headings), self.own if highlight is None else highlight)
 
     def _repr_html_(self):
-        return rate_table({method["name"]: self._of(method) for method in self.json["methods"]}, self.methods, self.own)
+        return rate_table({method["name"]: self._of(method) for method in self.json["methods"]}, self.headings, self.methods,
+                          self.own)
 
 
 class Comparison(Rated):
@@ -85,7 +87,7 @@ class Comparison(Rated):
         self.archive = archive
 
     def _of(self, method):
-        return method["rates"]
+        return method["rates"] | method["estimates"]
 
     def roc(self, method, truth="impact"):
         """pandas DataFrame: threshold, false_positive_rate, true_positive_rate of the scores of a method. `truth`: what
@@ -123,7 +125,7 @@ class Board(Rated):
         self._opened, self.folder, self.page = opened, folder, folder and folder / "leaderboard.html"
 
     def _of(self, method):
-        return method["all"]["rates"]
+        return method["all"]["rates"] | method["all"].get("estimates", {})
 
     def family(self, name):
         """pandas DataFrame as `intervals`, of the loops of one family."""

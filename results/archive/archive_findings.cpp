@@ -18,6 +18,7 @@ void write_finding_rows(Hdf5Group& group, const std::vector<Finding>& findings) 
                         attributes<std::string>({"finding", "name by which studies and gates refer to it"}));
   using F = Finding;
   const std::vector<Row<F>> rows{
+      member_row<std::string>({"heading", "heading in tables and figures", "1", "empty: none"}, &F::label),
       member_row<std::string>({"meaning", "which experiments are looked at, and what of them is counted"},
                               &F::meaning),
       value_row<std::string, F>(

@@ -253,9 +253,12 @@ Section trust_section(const RecordAssessment& of) {
                      of.trial->loops)
                : "What each method says of this record",
       {{"method", Table::Align::left}, {"flagged"}, {"score"}, {"CV"}, {"source"}});
+  constexpr std::string_view kRates[] = {"false_alarm_healthy", "detected", "located", "source"};
   if (of.trial)
-    for (const char* const title : {"threshold", "false alarms", "power", "right CV", "right source"})
-      table.columns.push_back({title});
+    table.columns.push_back({"threshold"});
+  for (const std::string_view rate : kRates)
+    if (of.trial)
+      table.columns.push_back({heading_of(rate)});
   Sentences reasons;
   for (std::size_t m = 0; m < of.said.size(); ++m) {
     const AssessmentRecord& said = of.said[m];
@@ -268,9 +271,8 @@ Section trust_section(const RecordAssessment& of) {
     if (of.trial)
       cells.emplace_back(Number{of.trial->methods[m].threshold});
     if (of.trial)
-      for (const Rate MethodRates::*const rate : {&MethodRates::false_alarm_healthy, &MethodRates::detected,
-                                                  &MethodRates::located, &MethodRates::source})
-        cells.emplace_back(number(of.trial->methods[m].rates.*rate, NumberForm::percent));
+      for (const std::string_view rate : kRates)
+        cells.emplace_back(number(of.trial->methods[m].rates[rate], NumberForm::percent));
     table.row(std::move(cells));
     if (!said.answered())
       reasons.words.push_back(name + ": " + as_label(said.reason));

@@ -57,9 +57,9 @@ Json named_json(const Study& study, const NamedMismatch& named) {
 
 Json trust_json(const TrialFindings& found) {
   Json rates;
-  for (const MethodRateInfo& info : method_rate_infos())
-    if (info.of == StudyFeature::any)
-      rates[info.name] = rate_json(found.rates.*info.rate);
+  for (const RateRow& row : rate_rows())
+    if (row.of == StudyFeature::any)
+      rates[row.name] = rate_json(found.rates.rates.of(row));
   return {{"threshold", found.threshold},
           {"rates", rates},
           {"as_high", rate_json(found.as_high)},

@@ -250,12 +250,12 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
       "Of {} simulated records like this one, with {}, {} flagged {} of those without a fault and {} of "
       "those "
       "with one ({} where it had an impact)",
-      of.trial->loops, worlds_text(of), name, share_text(rates.false_alarm_healthy),
-      share_text(rates.detected), share_text(rates.detected_impact));
-  if (rates.source.total > 0)
-    text += fmt::format("; of one fault alone it named the right source in {}", share_text(rates.source));
-  if (rates.located.total > 0)
-    text += fmt::format(", the right CV in {}", share_text(rates.located));
+      of.trial->loops, worlds_text(of), name, share_text(rates["false_alarm_healthy"]),
+      share_text(rates["detected"]), share_text(rates["detected_impact"]));
+  if (rates["source"].total > 0)
+    text += fmt::format("; of one fault alone it named the right source in {}", share_text(rates["source"]));
+  if (rates["located"].total > 0)
+    text += fmt::format(", the right CV in {}", share_text(rates["located"]));
   sentences.push_back(text + ".");
   if (of.found() == RecordVerdict::fault && found.same_source.total > 0)
     sentences.push_back(

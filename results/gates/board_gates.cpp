@@ -9,7 +9,6 @@
 #include <fmt/ranges.h>
 
 #include "analysis/findings/leaderboard_standing.hpp"
-#include "analysis/findings/loop_outcome.hpp"
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "base/error.hpp"
@@ -29,17 +28,13 @@ JoinedBoard joined(const BoardRun& run, double confidence) {
 /// "" over all loops, "FAMILY." of a family.
 void add_scores(const std::string& method, const std::string& family, const PooledScores& scores,
                 std::vector<Finding>& findings) {
-  const auto rates = method_rate_infos();
-  for (std::size_t i = 0; i < rates.size(); ++i)
-    if (OutcomeCounts::decide(rates[i].rate))
-      findings.push_back(method_finding(method, family + rates[i].name, rates[i].title, rates[i].meaning)
-                             .with(scores.rates[i]));
-  const auto estimates = method_estimate_infos();
-  for (std::size_t i = 0; i < scores.estimates.size(); ++i)
-    if (estimates[i].of == StudyFeature::worlds || estimates[i].of == StudyFeature::calibrated_worlds)
-      findings.push_back(
-          method_finding(method, family + estimates[i].name, estimates[i].title, estimates[i].meaning)
-              .with(scores.estimates[i].value, scores.estimates[i].interval, scores.estimates[i].count));
+  for (const RateRow& row : rate_rows())
+    findings.push_back(method_finding(method, row, family).with(scores.rates.of(row)));
+  for (const EstimateRow& row : estimate_rows())
+    if (row.of == StudyFeature::worlds || row.of == StudyFeature::calibrated_worlds) {
+      const Estimate& found = scores.estimates.of(row);
+      findings.push_back(method_finding(method, row, family).with(found.value, found.interval, found.count));
+    }
 }
 
 void add_standing(const Leaderboard& board, std::size_t method, std::vector<Finding>& findings) {
@@ -58,36 +53,17 @@ void add_standing(const Leaderboard& board, std::size_t method, std::vector<Find
       standing ? standing->lost() : kNaN);
 }
 
+/// A question of a baseline: the rate of which it is, whose hits are right answers or wrong ones.
 struct BoardQuestion {
   const char* name;
-  bool OutcomeScope::*scope;  ///< which methods can be asked; null: all
-  Correctness (*ask)(const FaultTruth& truth, const LoopOutcome& said);
+  std::string_view rate;
+  bool hit_is_right = true;
 };
 
-Correctness right_or_wrong(bool asked, bool right) {
-  if (!asked)
-    return Correctness::not_judged;
-  return right ? Correctness::right : Correctness::wrong;
-}
-
-constexpr BoardQuestion kBoardQuestions[] = {
-    {"quiet", nullptr,
-     [](const FaultTruth& truth, const LoopOutcome& said) {
-       return right_or_wrong(said.answered && truth.kind == ExperimentKind::healthy, !said.flagged);
-     }},
-    {"detected", nullptr,
-     [](const FaultTruth& truth, const LoopOutcome& said) {
-       return right_or_wrong(said.answered && truth.impact, said.flagged);
-     }},
-    {"located", &OutcomeScope::locates_cvs,
-     [](const FaultTruth& truth, const LoopOutcome& said) {
-       return right_or_wrong(said.flagged && truth.one_cv, said.right_cv);
-     }},
-    {"source", &OutcomeScope::tells_sources,
-     [](const FaultTruth& truth, const LoopOutcome& said) {
-       return right_or_wrong(truth.faulty(), said.flagged && said.right_source);
-     }},
-};
+constexpr BoardQuestion kBoardQuestions[] = {{"quiet", "false_alarm_healthy", false},
+                                             {"detected", "detected_impact"},
+                                             {"located", "located"},
+                                             {"source", "source_all"}};
 
 /// A cell of a run, and what one method said of its loops.
 struct MethodLoops {
@@ -95,9 +71,13 @@ struct MethodLoops {
   const MethodScores& scores;
 
   Correctness ask(const BoardQuestion& question, std::size_t loop) const {
-    if (scores.outcomes[loop] == kNoLoop)
+    const std::optional<LoopOutcome>& said = scores.outcomes[loop];
+    const std::optional<bool> hit =
+        said ? row_of(rate_rows(), question.rate).ask({scores.scope, *cell.truths[loop], *said})
+             : std::nullopt;
+    if (!hit)
       return Correctness::not_judged;
-    return question.ask(*fault_truth(cell.truths[loop]), *loop_outcome(scores.outcomes[loop]));
+    return *hit == question.hit_is_right ? Correctness::right : Correctness::wrong;
   }
 };
 
@@ -134,8 +114,6 @@ JudgementChanges changes_of(const std::vector<PairedCell>& cells, const BoardQue
   for (const PairedCell& cell : cells) {
     const MethodLoops before{cell.before, cell.before.methods[place_before]};
     const MethodLoops now{cell.now, cell.now.methods[place_now]};
-    if (question.scope != nullptr && !(now.scores.scope.*question.scope))
-      continue;
     int largest = -1;
     for (std::size_t loop = 0; loop < cell.now.truths.size(); ++loop) {
       const int world = cell.now.worlds[loop];
@@ -187,7 +165,7 @@ VerdictFailures failures_of(const FinishedBoard& board, std::size_t method) {
   for (const CellScores& cell : board.cells)
     if (cell.trouble.empty()) {
       const MethodScores& scores = cell.methods[method];
-      failures.add(VerdictFailures{scores.failed, scores.of("answered")->hits + scores.failed,
+      failures.add(VerdictFailures{scores.failed, scores["answered"].hits + scores.failed,
                                    scores.failed > 0 ? scores.reason : ""});
     }
   return failures;

@@ -19,7 +19,7 @@ struct BoardRun {
 };
 
 /// The findings that a gate can be put on, of each method of the run: "compare.METHOD.RATE" over all loops
-/// and "compare.METHOD.FAMILY.RATE", for each rate that OutcomeCounts decide and each pooled estimate; and
+/// and "compare.METHOD.FAMILY.RATE", for each rate and each pooled estimate; and
 /// "compare.METHOD.place", ".beats" and ".loses_to" (standing_of()) beside the methods of `finished`.
 std::vector<Finding> gate_findings(const BoardRun& run);
 

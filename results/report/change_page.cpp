@@ -188,7 +188,7 @@ Section rates_section(const Change& change) {
     for (const RateChange& rate : method.rates)
       if (const ShareDifference& difference = rate.difference; is_shown(rate, paired))
         table.row(
-            {as_label(rate.info->title), share(rate.before), share(rate.now),
+            {as_label(rate.row->heading), share(rate.before), share(rate.now),
              paired ? Cell(rate.counts.total())
                           .with(fmt::format("-{}, +{}", rate.counts.first, rate.counts.second))
                     : Cell("-"),

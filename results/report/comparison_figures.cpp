@@ -36,7 +36,7 @@ Pen whisker_pen(std::size_t method) {
 std::vector<std::size_t> answering(const Methods& methods) {
   std::vector<std::size_t> places;
   for (std::size_t m = 0; m < methods.size(); ++m)
-    if (methods[m].rates.answered.hits > 0)
+    if (methods[m].rates["answered"].hits > 0)
       places.push_back(m);
   return places;
 }
@@ -49,24 +49,27 @@ Whisker rate_whisker(const MethodFindings& method, const Rate& rate, double at) 
                       lower, upper, rate.hits, rate.total)};
 }
 
-Panel rate_panel(const MethodRateInfo& info, const Methods& methods) {
+Panel rate_panel(const RateRow& row, const Methods& methods) {
   const std::vector<std::size_t> places = answering(methods);
   const auto rows = static_cast<double>(places.size());
   Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
   for (const std::size_t place : places)
     y.words.push_back(methods[place].name());
   std::reverse(y.words.begin(), y.words.end());  // the first one on top
-  PanelScript panel(
-      info.name, info.title,
-      {.label = "share of loops (%)", .lower = -2, .upper = 102, .ticks = {0, 20, 40, 60, 80, 100}}, y);
+  PanelScript panel(row.name, row.heading,
+                    {.label = row.low_is_good ? "% of loops, left is good" : "% of loops, right is good",
+                     .lower = -2,
+                     .upper = 102,
+                     .ticks = {0, 20, 40, 60, 80, 100}},
+                    y);
   double at = rows;
   for (const std::size_t place : places) {
-    const Rate& rate = methods[place].rates.*info.rate;
+    const Rate& rate = methods[place].rates.rates.of(row);
     at -= 1.0;
     if (rate.total > 0)
       panel.level_whiskers({rate_whisker(methods[place], rate, at)}, whisker_pen(place));
   }
-  return panel.finish(fmt::format("Share of loops with its interval, one row a method: {}.", info.meaning),
+  return panel.finish(fmt::format("Share of loops with its interval, one row a method: {}.", row.meaning),
                       70.0 + (places.size() > kFewMethods ? 18.0 : 28.0) * rows);
 }
 
@@ -115,7 +118,8 @@ RocWords roc_words(FlagTruth truth) {
 
 /// Where the method itself draws the line: what it flags of both kinds of loops.
 NamedPoint verdict_point(const MethodFindings& method) {
-  const double x = 100.0 * method.rates.false_alarm_healthy.value, y = 100.0 * method.rates.detected.value;
+  const double x = 100.0 * method.rates["false_alarm_healthy"].value,
+               y = 100.0 * method.rates["detected"].value;
   return {x, y,
           fmt::format("{}: {:.1f} % of the faults detected, {:.1f} % false alarms", method.name(), y, x)};
 }
@@ -125,14 +129,11 @@ NamedPoint verdict_point(const MethodFindings& method) {
 Figure comparison_rates_figure(const Study& study, const Methods& methods) {
   Figure figure;
   figure.name = "comparison-rates";
-  figure.caption = fmt::format(
-      "How often each method that gave a verdict is right, with {:g} % intervals: false alarms, flags "
-      "without "
-      "impact and faults without a source are good on the left, all others on the right.",
-      100.0 * study.aggregate.confidence);
-  for (const MethodRateInfo& info : counted_rates(methods))
-    if (info.rate != &MethodRates::answered)
-      figure.panels.push_back(rate_panel(info, methods));
+  figure.caption = fmt::format("How often each method that gave a verdict is right, with {:g} % intervals.",
+                               100.0 * study.aggregate.confidence);
+  for (const RateRow* const row : counted_rates(methods))
+    if (row->name != std::string_view("answered"))
+      figure.panels.push_back(rate_panel(*row, methods));
   return figure;
 }
 

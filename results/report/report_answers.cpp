@@ -33,13 +33,13 @@ std::string asked(const ReportInput& input) {
 
 /// Where no method names a source: of the one that finds the CV most often. Empty when none names a CV.
 std::string found_of_cvs(const ReportInput& input) {
-  const MethodFindings* const best = best_method(input.findings(), &MethodRates::located);
+  const MethodFindings* const best = best_method(input.findings(), "located");
   if (best == nullptr)
     return "";
   return fmt::format(
       "no method names a source; {} flags {} of the loops with a fault and finds the CV most often, in {} of "
       "the loops it flags",
-      code(best->name()), share_words(best->rates.detected), share_words(best->rates.located));
+      code(best->name()), share_words(best->rates["detected"]), share_words(best->rates["located"]));
 }
 
 std::string found(const ReportInput& input) {
@@ -57,10 +57,10 @@ std::string found(const ReportInput& input) {
   if (const Rate source = input.findings().source_recognised; source.total > 0)
     text += fmt::format("{}the source of a single fault in {}",
                         text.empty() ? "the chain of the thesis names " : " and ", share_words(source));
-  if (const MethodFindings* const best = best_method(input.findings(), &MethodRates::source);
+  if (const MethodFindings* const best = best_method(input.findings(), "source");
       best != nullptr && best != input.findings().chain())
     text += fmt::format("{}{} names the source most often, in {} of the loops it flags",
-                        text.empty() ? "" : "; ", code(best->name()), share_words(best->rates.source));
+                        text.empty() ? "" : "; ", code(best->name()), share_words(best->rates["source"]));
   if (text.empty())
     text = found_of_cvs(input);
   if (!text.empty())
@@ -90,9 +90,9 @@ std::string advice(const ReportInput& input) {
     return "do not use these numbers: the basis case failed its self-check. Repair the study first.";
   if (input.campaign.study.names_scenarios())
     return "read the scenarios that went wrong, one by one.";
-  const MethodFindings* const best = best_method(input.findings(), &MethodRates::source);
+  const MethodFindings* const best = best_method(input.findings(), "source");
   if (best != nullptr && best != input.findings().chain())
-    return advice_on(code(best->name()), best->rates.located, best->rates.source);
+    return advice_on(code(best->name()), best->rates["located"], best->rates["source"]);
   if (input.kinds().empty())
     return "compare detection and false alarms of the methods below before you choose one.";
   const Rate located = input.findings().located;

@@ -19,11 +19,10 @@ using Methods = std::vector<MethodFindings>;
 /// What each rate counts.
 std::string rates_legend(const Study& study) {
   std::string words;
-  for (const MethodRateInfo& info : method_rate_infos(study))
-    words += fmt::format("{}: {}. ", strong(info.title), as_label(info.meaning));
-  for (const MethodEstimateInfo& info : method_estimate_infos(study))
-    words += fmt::format("{}: {}. ", strong(info.title), as_label(info.meaning));
-  return words + strong("false alarms stated") + ": share of healthy loops that the method claims to flag.";
+  for (const MethodNumber& number : method_numbers())
+    if (has_feature(study, number.of))
+      words += fmt::format("{}: {}. ", strong(number.heading), as_label(number.meaning));
+  return words + strong("False alarms stated") + ": share of healthy loops that the method claims to flag.";
 }
 
 Table methods_table(const Methods& methods) {

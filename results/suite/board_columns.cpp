@@ -14,13 +14,13 @@ namespace mpm {
 namespace {
 
 constexpr std::array kColumns{
-    BoardColumn{kRankingSource, "Right source", "naming the source of a fault"},
-    BoardColumn{"power_05_impact", "Faults found", "finding faults"},
-    BoardColumn{kRankingRepair, "Best repair's gain", "naming the channel to repair"},
-    BoardColumn{"detected_impact", "Faults found", "finding faults", false, "power_05_impact"},
-    BoardColumn{"source_all", "Right source", "naming the source of a fault", false, kRankingSource},
-    BoardColumn{"false_alarm_calibrated", "Healthy, calibrated", "", true},
-    BoardColumn{"false_alarm_healthy", "Healthy, own threshold", "", true},
+    BoardColumn{kRankingSource, "naming the source of a fault"},
+    BoardColumn{"power_05_impact", "finding faults"},
+    BoardColumn{kRankingRepair, "naming the channel to repair"},
+    BoardColumn{"detected_impact", "finding faults", "power_05_impact"},
+    BoardColumn{"source_all", "naming the source of a fault", kRankingSource},
+    BoardColumn{"false_alarm_calibrated"},
+    BoardColumn{"false_alarm_healthy"},
 };
 
 bool has_numbers(const Leaderboard& board, const BoardColumn& column) {
@@ -56,10 +56,21 @@ std::string latex_text(const std::string& text) {
   return escaped;
 }
 
-/// A heading in two lines, so that the table fits a page: "\shortstack[r]{Healthy,\\own threshold}"
-std::string latex_heading(std::string_view heading) {
-  const std::size_t space = heading.find(' ');
-  return fmt::format("\\shortstack[r]{{{}\\\\{}}}", heading.substr(0, space), heading.substr(space + 1));
+/// A heading in two lines, broken at the space next to its middle, so that the table fits a page:
+/// "\\shortstack[r]{Healthy flagged,\\\\calibrated}"
+std::string latex_heading(const std::string& heading) {
+  std::size_t best = std::string::npos;
+  const auto off = [&heading](std::size_t place) {
+    return std::abs(2 * static_cast<std::int64_t>(place) - std::ssize(heading));
+  };
+  for (std::size_t space = heading.find(' '); space != std::string::npos;
+       space = heading.find(' ', space + 1))
+    if (best == std::string::npos || off(space) < off(best))
+      best = space;
+  if (best == std::string::npos)
+    return latex_text(heading);
+  return fmt::format("\\shortstack[r]{{{}\\\\{}}}", latex_text(heading.substr(0, best)),
+                     latex_text(heading.substr(best + 1)));
 }
 
 /// "89 (86--90)", with a mark for a method that does not answer on all loops.
@@ -84,10 +95,13 @@ std::vector<BoardColumn> board_columns(const Leaderboard& board) {
 
 Number board_number(const Leaderboard& board, std::size_t method, const BoardColumn& column) {
   const PooledScores& scores = board.overall[method];
-  if (const Rate* const rate = scores.of(column.name))
-    return rate->total == 0 ? Number{}
-                            : Number{rate->value, NumberForm::whole_percent, rate->interval, rate->total};
-  const Estimate estimate = scores.estimate(column.name);
+  for (const RateRow& row : rate_rows())
+    if (row.name == column.name) {
+      const Rate& rate = scores.rates.of(row);
+      return rate.total == 0 ? Number{}
+                             : Number{rate.value, NumberForm::whole_percent, rate.interval, rate.total};
+    }
+  const Estimate& estimate = scores.estimates[column.name];
   return {estimate.value, NumberForm::whole_percent, estimate.interval, estimate.count};
 }
 
@@ -138,7 +152,7 @@ std::string leaderboard_latex(const Leaderboard& board) {
       latex_text(board.suite), latex_text(board.version), board.seed, latex_text(board.program),
       100 * board.confidence, 100 * kFewestAnswers, std::string(columns.size(), 'r'));
   for (const BoardColumn& column : columns)
-    text += " & " + latex_heading(column.title);
+    text += " & " + latex_heading(heading_of(column.name));
   text += " \\\\\n\\midrule\n";
   for (const std::size_t method : board_order(board)) {
     const std::string name = latex_text(board.methods[method]);

@@ -15,11 +15,9 @@ namespace mpm {
 
 /// A column: a rate or an estimate over all loops of the suite.
 struct BoardColumn {
-  std::string_view name;   ///< in method_rate_infos() or method_estimate_infos()
-  std::string_view title;  ///< for people
-  std::string_view
-      task;  ///< "naming the source of a fault": at what the method with the most is best; empty: nothing
-  bool low_is_good = false;
+  std::string_view name;  ///< in method_numbers()
+  /// "naming the source of a fault": at what the method with the most is best; empty: nothing
+  std::string_view task = {};
   std::string_view unless = {};  ///< there is the column of this name
 };
 

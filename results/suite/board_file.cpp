@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -24,6 +23,7 @@
 #include "base/system/json_entry.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
+#include "results/suite/board_letters.hpp"
 #include "scenarios/loop/draw.hpp"
 
 namespace mpm {
@@ -45,13 +45,16 @@ std::string study_digest(const SuiteCell& cell) {
   return sha256(std::as_bytes(std::span(text)));
 }
 
-std::size_t place_of_estimate(std::string_view name) {
-  const auto infos = method_estimate_infos();
-  return static_cast<std::size_t>(
-      std::find_if(infos.begin(), infos.end(),
-                   [name](const MethodEstimateInfo& info) { return info.name == name; }) -
-      infos.begin());
+/// The key of the letters of so many texts before: "outcomes", "outcomes_2", ...
+std::string outcome_key(std::size_t text) {
+  return text == 0 ? "outcomes" : fmt::format("outcomes_{}", text + 1);
 }
+
+constexpr std::pair<const char*, bool OutcomeScope::*> kThresholdFlags[] = {
+    {"at_05", &OutcomeScope::at_05},
+    {"at_chosen", &OutcomeScope::at_chosen},
+    {"at_01", &OutcomeScope::at_01},
+    {"at_not_mpm", &OutcomeScope::at_not_mpm}};
 
 // What is written.
 
@@ -73,21 +76,24 @@ BoardJson clusters_json(const Estimate& estimate) {
 }
 
 BoardJson scores_json(const CellScores& cell, const MethodScores& scores) {
-  BoardJson json{{"outcomes", scores.outcomes}};
-  if (scores.scope.at_05)
-    json["at_05"] = true;
-  if (scores.scope.at_chosen)
-    json["at_chosen"] = true;
+  BoardJson json;
+  const std::vector<std::string> texts = outcome_letters(scores.outcomes);
+  for (std::size_t text = 0; text < texts.size(); ++text)
+    if (text == 0 || texts[text].find_first_not_of("A-") != std::string::npos)
+      json[outcome_key(text)] = texts[text];
+  for (const auto& [key, flag] : kThresholdFlags)
+    if (scores.scope.*flag)
+      json[key] = true;
   if (scores.failed > 0)
     json["failed"] = scores.failed;
   if (!scores.reason.empty())
     json["reason"] = proper_utf8(scores.reason);
   for (const char* const name : kRepairGains)
-    if (const Estimate gain = scores.estimate(name); gain.count > 0)
+    if (const Estimate& gain = scores.estimates[name]; gain.count > 0)
       json[name] = clusters_json(gain);
   if (cell.monitored)
     for (const char* const name : kDelays)
-      if (const Estimate found = scores.estimate(name); found.count > 0)
+      if (const Estimate& found = scores.estimates[name]; found.count > 0)
         json[name] = {rounded(found.value), rounded(found.interval.lower), rounded(found.interval.upper),
                       found.count};
   return json;
@@ -104,7 +110,7 @@ BoardJson cell_json(const Leaderboard& board, const CellScores& cell, const Suit
     json["trouble"] = proper_utf8(cell.trouble);
     return json;
   }
-  json["truths"] = cell.truths;
+  json["truths"] = truth_letters(cell.truths);
   json["worlds"] = cell.worlds;
   json["methods"] = BoardJson::object();
   for (std::size_t method = 0; method < board.methods.size(); ++method)
@@ -144,18 +150,17 @@ double rounded_in(const JsonEntry& entry) {
   return entry.number();
 }
 
-/// One letter for each of so many loops; of a loop that was assessed one that `fits`.
-std::string letters_in(const JsonEntry& entry, std::size_t loops,
-                       const std::function<bool(std::size_t loop, char letter)>& fits, const char* what) {
+/// One letter for each of so many loops.
+std::string letters_in(const JsonEntry& entry, std::size_t loops) {
   entry.require(entry.json().is_string() && entry.json().get_ref<const std::string&>().size() == loops,
                 fmt::format("a text of {} letters, one for each loop", loops));
-  auto letters = entry.json().get<std::string>();
-  for (std::size_t i = 0; i < letters.size(); ++i)
-    if (letters[i] != kNoLoop && !fits(i, letters[i]))
-      throw InputError(fmt::format("{}, loop {}", entry.place(), i),
-                       fmt::format("'{}'", foreign_text(letters.substr(i, 1), kShownBytes)),
-                       fmt::format("{}, or '{}'", what, kNoLoop));
-  return letters;
+  return entry.json().get<std::string>();
+}
+
+[[noreturn]] void refuse_letter(const JsonEntry& entry, std::size_t loop, char letter, const char* what) {
+  throw InputError(fmt::format("{}, loop {}", entry.place(), loop),
+                   fmt::format("'{}'", foreign_text(std::string(1, letter), kShownBytes)),
+                   fmt::format("{}, or '{}'", what, kNoLoop));
 }
 
 /// What the suite draws for the loops of a cell: all of their truth but what they cost.
@@ -180,7 +185,7 @@ Estimate gain_in(const JsonEntry& entry, const CellScores& cell, double confiden
   for (std::size_t i = 0; i < cell.truths.size(); ++i) {
     const auto world = static_cast<std::size_t>(std::int64_t{cell.worlds[i]} + 1);
     most.resize(std::max(most.size(), world + 1));
-    most[world] += cell.truths[i] != kNoLoop && fault_truth(cell.truths[i])->impact ? 1 : 0;
+    most[world] += cell.truths[i] && cell.truths[i]->impact ? 1 : 0;
   }
   const std::vector<JsonEntry> list = entry.list();
   entry.require(list.size() <= most.size(), fmt::format("at most {}, one for each world", most.size()));
@@ -211,44 +216,58 @@ Estimate delay_in(const JsonEntry& entry, const Study& study, std::size_t loops)
   return delay;
 }
 
-/// Does the answer say nothing that such a method cannot, and nothing right of what is not there?
-bool may_be_said(const LoopOutcome& outcome, const FaultTruth& truth, const OutcomeScope& scope) {
-  return (!outcome.above_05 || scope.at_05) && (!outcome.above_chosen || scope.at_chosen) &&
-         (!outcome.right_cv || (truth.one_cv && scope.locates_cvs)) &&
-         (!outcome.right_source || (truth.faulty() && scope.tells_sources));
+/// What a method of this scope said of the loops of a cell.
+LoopOutcomes outcomes_in(const JsonEntry& entry, const CellScores& cell, const OutcomeScope& scope) {
+  const std::size_t loops = cell.truths.size(), count = outcome_text_count();
+  std::vector<std::string> texts{letters_in(entry.at(outcome_key(0)), loops)};
+  for (std::size_t text = 1; text < count; ++text)
+    texts.push_back(entry.has(outcome_key(text)) ? letters_in(entry.at(outcome_key(text)), loops)
+                                                 : std::string(loops, 'A'));
+  LoopOutcomes outcomes;
+  for (std::size_t loop = 0; loop < loops; ++loop) {
+    std::string letters;
+    for (const std::string& text : texts)
+      letters += text[loop] == kNoLoop ? "" : text.substr(loop, 1);
+    if (texts[0][loop] == kNoLoop) {
+      outcomes.emplace_back();
+      continue;
+    }
+    const std::optional<LoopOutcome> outcome = loop_outcome(letters);
+    if (!outcome || letters.size() != count || !cell.truths[loop] ||
+        !is_possible(*outcome, *cell.truths[loop], scope))
+      refuse_letter(entry.at(outcome_key(0)), loop, texts[0][loop],
+                    "letters of an outcome that such a method can have on such a loop");
+    outcomes.push_back(outcome);
+  }
+  return outcomes;
 }
 
 MethodScores scores_in(const JsonEntry& entry, const CellScores& cell, const Study& study,
                        OutcomeScope scope) {
-  entry.require_keys({"outcomes", "at_05", "at_chosen", "failed", "reason", kRepairGains[0], kRepairGains[1],
-                      kDelays[0], kDelays[1]});
-  for (const auto& [key, flag] :
-       {std::pair("at_05", &OutcomeScope::at_05), {"at_chosen", &OutcomeScope::at_chosen}})
+  std::vector<std::string> keys{"failed", "reason", kRepairGains[0], kRepairGains[1], kDelays[0], kDelays[1]};
+  for (std::size_t text = 0; text < (scope.is_whole ? outcome_text_count() : 1); ++text)
+    keys.push_back(outcome_key(text));
+  for (const auto& [key, flag] : kThresholdFlags) {
+    keys.emplace_back(key);
     if (entry.has(key)) {
       scope.*flag = entry.at(key).flag();
       entry.at(key).require(!(scope.*flag) || study.calibration, "false: the study has no calibration");
     }
+  }
+  entry.require_keys(keys);
   scope.in_worlds = cell.in_worlds;
-  const std::string outcomes = letters_in(
-      entry.at("outcomes"), cell.truths.size(),
-      [&](std::size_t loop, char letter) {
-        const std::optional<LoopOutcome> outcome = loop_outcome(letter);
-        return outcome && cell.truths[loop] != kNoLoop &&
-               may_be_said(*outcome, *fault_truth(cell.truths[loop]), scope);
-      },
-      "a letter of an outcome that such a method can have on such a loop");
+  const LoopOutcomes outcomes = outcomes_in(entry, cell, scope);
   MethodScores scores = scores_of_outcomes(cell, outcomes, scope);
   if (entry.has("failed"))
-    scores.failed =
-        entry.at("failed").whole(0, std::count(outcomes.begin(), outcomes.end(), letter_of(LoopOutcome{})));
+    scores.failed = entry.at("failed").whole(0, std::count(outcomes.begin(), outcomes.end(), LoopOutcome{}));
   if (entry.has("reason"))
     scores.reason = words_in(entry.at("reason"));
   for (const char* const name : kRepairGains)
     if (entry.has(name))
-      scores.estimates[place_of_estimate(name)] = gain_in(entry.at(name), cell, study.aggregate.confidence);
+      scores.estimates[name] = gain_in(entry.at(name), cell, study.aggregate.confidence);
   for (const char* const name : kDelays)
     if (entry.has(name))
-      scores.estimates[place_of_estimate(name)] = delay_in(entry.at(name), study, cell.truths.size());
+      scores.estimates[name] = delay_in(entry.at(name), study, cell.truths.size());
   return scores;
 }
 
@@ -257,7 +276,7 @@ struct BoardMethod {
   OutcomeScope scope;
 };
 
-std::vector<BoardMethod> methods_in(const JsonEntry& entry) {
+std::vector<BoardMethod> methods_in(const JsonEntry& entry, bool is_whole) {
   std::vector<BoardMethod> methods;
   for (const JsonEntry& method : entry.list()) {
     method.require_keys({"name", "cv", "source"});
@@ -266,8 +285,10 @@ std::vector<BoardMethod> methods_in(const JsonEntry& entry) {
     method.at("name").require(std::none_of(methods.begin(), methods.end(),
                                            [&](const BoardMethod& each) { return each.name == name; }),
                               "each method once");
-    methods.push_back(
-        {name, {.locates_cvs = method.at("cv").flag(), .tells_sources = method.at("source").flag()}});
+    methods.push_back({name,
+                       {.locates_cvs = method.at("cv").flag(),
+                        .tells_sources = method.at("source").flag(),
+                        .is_whole = is_whole}});
   }
   entry.require(!methods.empty(), "at least one method");
   return methods;
@@ -276,14 +297,16 @@ std::vector<BoardMethod> methods_in(const JsonEntry& entry) {
 /// The loops, which are those that the suite draws.
 void read_loops(const JsonEntry& entry, const DrawnLoops& drawn, CellScores& cell) {
   const std::size_t loops = drawn.truths.size();
-  cell.truths = letters_in(
-      entry.at("truths"), loops,
-      [&](std::size_t loop, char letter) {
-        const std::optional<FaultTruth> truth = fault_truth(letter);
-        return truth && truth->kind == drawn.truths[loop].kind && truth->one_cv == drawn.truths[loop].one_cv;
-      },
-      "a letter of the fault that the suite draws for the loop");
-  const auto unseen = std::count(cell.truths.begin(), cell.truths.end(), kNoLoop);
+  const std::string letters = letters_in(entry.at("truths"), loops);
+  for (std::size_t loop = 0; loop < loops; ++loop) {
+    const std::optional<FaultTruth> truth = fault_truth(letters[loop]);
+    if (letters[loop] != kNoLoop &&
+        !(truth && truth->kind == drawn.truths[loop].kind && truth->one_cv == drawn.truths[loop].one_cv))
+      refuse_letter(entry.at("truths"), loop, letters[loop],
+                    "a letter of the fault that the suite draws for the loop");
+    cell.truths.push_back(truth);
+  }
+  const auto unseen = std::count(cell.truths.begin(), cell.truths.end(), std::nullopt);
   entry.at("failed").require(
       cell.failed + cell.infeasible <= unseen,
       fmt::format("with `infeasible` at most {}, the loops that nobody has seen", unseen));
@@ -379,8 +402,8 @@ BoardJson board_json(const std::filesystem::path& path) {
 }
 
 FinishedBoard board_in(const JsonEntry& entry, const Suite& suite) {
-  entry.require_keys(
-      {"format", "suite", "version", "seed", "mpmbench_version", "revision", "methods", "cells"});
+  entry.require_keys({"format", "suite", "version", "seed", "mpmbench_version", "revision", "outcome_texts",
+                      "methods", "cells"});
   const auto same = [&entry](const char* key, const std::string& expected) {
     entry.at(key).require(entry.at(key).text() == expected, fmt::format("\"{}\"", expected));
   };
@@ -390,7 +413,9 @@ FinishedBoard board_in(const JsonEntry& entry, const Suite& suite) {
   entry.at("seed").require(static_cast<std::uint64_t>(entry.at("seed").whole()) == suite.seed,
                            fmt::to_string(suite.seed));
   FinishedBoard board{words_in(entry.at("mpmbench_version")), words_in(entry.at("revision"))};
-  const std::vector<BoardMethod> methods = methods_in(entry.at("methods"));
+  const auto texts = static_cast<std::int64_t>(outcome_text_count());
+  const bool is_whole = entry.has("outcome_texts") && entry.at("outcome_texts").whole(1, texts) == texts;
+  const std::vector<BoardMethod> methods = methods_in(entry.at("methods"), is_whole);
   for (const BoardMethod& method : methods)
     board.methods.push_back(method.name);
   for (const JsonEntry& cell : entry.at("cells").list()) {
@@ -421,7 +446,8 @@ std::string board_text(const Suite& suite, const Leaderboard& board, const std::
                        {"version", board.version},
                        {"seed", board.seed},
                        {"mpmbench_version", board.program},
-                       {"revision", revision}};
+                       {"revision", revision},
+                       {"outcome_texts", outcome_text_count()}};
   std::string text = "{\n";
   for (const auto& [key, value] : head.items())
     text += fmt::format("\"{}\": {},\n", key, value.dump());

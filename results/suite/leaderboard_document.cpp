@@ -20,16 +20,16 @@ using AllScores = std::vector<std::vector<PooledScores>>;  // [method][column]
 
 /// A share on a ground that is deeper the better it is, or the worse. Its marks: '*' for too many false
 /// alarms, '~' for verdicts on a part of the loops.
-Cell score_cell(const PooledScores& scores, const LeaderboardScore& score) {
-  const Rate* const rate = scores.of(score.rate);
-  if (rate == nullptr || rate->total == 0)
+Cell score_cell(const PooledScores& scores, const RateRow& row) {
+  const Rate& rate = scores.rates.of(row);
+  if (rate.total == 0)
     return Number{};
-  Cell cell = number(*rate, NumberForm::whole_percent);
+  Cell cell = number(rate, NumberForm::whole_percent);
   cell.mark =
       fmt::format("{}{}", scores.too_many_false_alarms() ? "*" : "", scores.answers_in_part() ? "~" : "");
-  cell.hover = fmt::format("{} of {} loops", rate->hits, rate->total);
-  cell.ground = rate->value;
-  cell.low_is_good = score.low_is_good;
+  cell.hover = fmt::format("{} of {} loops", rate.hits, rate.total);
+  cell.ground = rate.value;
+  cell.low_is_good = row.low_is_good;
   return cell;
 }
 
@@ -63,7 +63,8 @@ Table methods_table(const Leaderboard& board, std::string caption, const std::ve
   return table;
 }
 
-/// With a column for each plant or family, and one for all of them; `cell` makes the entries from the scores.
+/// Of the number of this name, with a column for each plant or family, and one for all of them; `cell` makes
+/// the entries from the scores.
 Table axis_table(const Leaderboard& board, std::string caption, const std::vector<SuiteAxis>& axis,
                  const AllScores& scores, const auto& cell) {
   std::vector<std::string> heads;
@@ -75,13 +76,18 @@ Table axis_table(const Leaderboard& board, std::string caption, const std::vecto
   });
 }
 
+Table rate_table(const Leaderboard& board, const RateRow& row, const std::vector<SuiteAxis>& axis,
+                 const AllScores& scores) {
+  return axis_table(board,
+                    fmt::format("{}, % of loops with {:g} % interval", row.heading, 100 * board.confidence),
+                    axis, scores, [&row](const PooledScores& entry) { return score_cell(entry, row); });
+}
+
 Section scores_section(const Leaderboard& board, const char* id, const char* title,
                        const std::vector<SuiteAxis>& axis, const AllScores& scores) {
   Section section{.id = id, .title = title, .shown = Shown::full};
-  for (const LeaderboardScore& score : leaderboard_scores())
-    section.add(axis_table(
-        board, fmt::format("{}, % of loops with {:g} % interval", score.title, 100 * board.confidence), axis,
-        scores, [&](const PooledScores& entry) { return score_cell(entry, score); }));
+  for (const std::string_view name : leaderboard_rates())
+    section.add(rate_table(board, row_of(rate_rows(), name), axis, scores));
   return section;
 }
 
@@ -134,24 +140,12 @@ Section ranking_section(const Leaderboard& board) {
   Section section{.id = "ranking", .title = "Who is right in worlds", .shown = Shown::full};
   if (!board.in_worlds())
     return section;
-  section.add(
-      axis_table(board,
-                 fmt::format("Faults with an impact at 5 % false alarms, the right source named, % of loops "
-                             "with {:g} % interval",
-                             100 * board.confidence),
-                 board.families, board.by_family, [](const PooledScores& scores) {
-                   return score_cell(scores, {kRankingSource, "", false});
-                 }));
-  for (const auto& [name, words] :
-       {std::pair(kRankingRepair, "at 5 % false alarms"), {"repair_gain_share", "at its own threshold"}})
+  section.add(rate_table(board, row_of(rate_rows(), kRankingSource), board.families, board.by_family));
+  for (const std::string_view name : {kRankingRepair, std::string_view("repair_gain_share")})
     section.add(axis_table(
-        board,
-        fmt::format(
-            "Share of the best repair's gain that the named channel brings, {}, mean in % with {:g} % "
-            "interval",
-            words, 100 * board.confidence),
+        board, fmt::format("{}, mean in % with {:g} % interval", heading_of(name), 100 * board.confidence),
         board.families, board.by_family,
-        [name = name](const PooledScores& scores) { return estimate_cell(scores.estimate(name)); }));
+        [name](const PooledScores& scores) { return estimate_cell(scores.estimates[name]); }));
   return section;
 }
 
@@ -164,7 +158,8 @@ std::string plain_number(double value, int digits) {
 
 /// "94 (76 to 103); 0": the median delay of a method with its interval, and its false alarms a day.
 Cell delay_cell(const MethodScores& scores) {
-  const Estimate delay = scores.estimate("detection_delay"), alarms = scores.estimate("false_alarms_a_day");
+  const Estimate &delay = scores.estimates["detection_delay"],
+                 &alarms = scores.estimates["false_alarms_a_day"];
   if (delay.count == 0 && alarms.count == 0)
     return Number{};
   std::string text = delay.count == 0 ? "-" : plain_number(delay.value, 3);
@@ -210,10 +205,10 @@ Section reference_section(const Leaderboard& board) {
       heads.push_back(board.families[family].name);
       families.push_back(family);
     }
-  const std::vector<LeaderboardScore> known = leaderboard_scores();
+  const std::vector<std::string_view> known = leaderboard_rates();
   for (std::size_t i = 0; has_reference(board) && i < known.size(); ++i)
-    if (!known[i].low_is_good)
-      section.add(methods_table(board, fmt::format("{}, % of the reference", known[i].title), heads,
+    if (!method_number(known[i]).low_is_good)
+      section.add(methods_table(board, fmt::format("{}, % of the reference", heading_of(known[i])), heads,
                                 [&](std::size_t method, std::size_t column) -> Cell {
                                   return Number{
                                       board.by_family[method][families[column]].shares_of_ceiling[i],
@@ -228,10 +223,10 @@ Section silences_section(const Leaderboard& board) {
   Sentences sentences;
   for (std::size_t method = 0; method < board.methods.size(); ++method)
     if (const PooledScores& scores = board.overall[method]; !scores.reason.empty()) {
-      const Rate* const answered = scores.of("answered");
+      const Rate& answered = scores["answered"];
       sentences.words.push_back(fmt::format("{}: {} of {} loops, the first because: {}",
-                                            as_label(board.methods[method]), answered->total - answered->hits,
-                                            answered->total, as_label(scores.reason)));
+                                            as_label(board.methods[method]), answered.total - answered.hits,
+                                            answered.total, as_label(scores.reason)));
     }
   for (const CellScores& cell : board.cells)
     if (!cell.trouble.empty())
@@ -247,10 +242,12 @@ Section silences_section(const Leaderboard& board) {
 Section cells_section(const Leaderboard& board) {
   Section section{.id = "cells", .title = "Families, plants and cells", .shown = Shown::page};
   Sentences counted;
-  for (const LeaderboardScore& score : leaderboard_scores())
-    for (const MethodRateInfo& info : method_rate_infos())
-      if (score.rate == info.name)
-        counted.words.push_back(fmt::format("{}: {}", strong(score.title), as_label(info.meaning)));
+  std::vector<std::string_view> shown = leaderboard_rates();
+  if (board.in_worlds())
+    shown.insert(shown.end(), {kRankingSource, kRankingRepair, "repair_gain_share"});
+  for (const std::string_view name : shown)
+    counted.words.push_back(
+        fmt::format("{}: {}", strong(heading_of(name)), as_label(method_number(name).meaning)));
   section.add(std::move(counted));
   const auto axis_table = [&](const char* caption, const char* what, const std::vector<SuiteAxis>& axis) {
     Table table(caption, {{what, Table::Align::left}, {"", Table::Align::text}});

@@ -23,8 +23,9 @@ Panel column_panel(const Leaderboard& board, const std::vector<std::size_t>& ord
   for (const std::size_t method : order)
     y.words.push_back(board.methods[method]);
   std::reverse(y.words.begin(), y.words.end());  // the first one on top
-  PanelScript panel(std::string(column.name), std::string(column.title),
-                    {.label = column.low_is_good ? "% of loops, left is good" : "%, right is good",
+  const MethodNumber number_text = method_number(column.name);
+  PanelScript panel(number_text.name, number_text.heading,
+                    {.label = number_text.low_is_good ? "% of loops, left is good" : "%, right is good",
                      .lower = -2,
                      .upper = 102,
                      .ticks = {0, 20, 40, 60, 80, 100}},
@@ -45,7 +46,9 @@ Panel column_panel(const Leaderboard& board, const std::vector<std::size_t>& ord
   }
   panel.level_whiskers(others, kOthers);
   panel.level_whiskers(own, kOwn);
-  return panel.finish(fmt::format("{}, with intervals, one row a method.", column.title), 70.0 + 20.0 * rows);
+  return panel.finish(
+      fmt::format("{}, with intervals, one row a method: {}.", number_text.heading, number_text.meaning),
+      70.0 + 20.0 * rows);
 }
 
 }  // namespace

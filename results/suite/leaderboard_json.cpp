@@ -7,6 +7,7 @@
 #include "analysis/findings/method_rates.hpp"
 #include "results/document/words.hpp"
 #include "results/files/utf8.hpp"
+#include "results/suite/board_columns.hpp"
 #include "results/suite/leaderboard_output.hpp"
 #include "results/text/number_json.hpp"
 
@@ -29,19 +30,16 @@ bool has_number(const Leaderboard& board, StudyFeature of) {
 
 SuiteJson scores_json(const Leaderboard& board, const PooledScores& scores) {
   SuiteJson rates = SuiteJson::object(), passed = SuiteJson::object();
-  std::size_t place = 0;
-  for (const MethodRateInfo& info : method_rate_infos()) {
-    const Rate& rate = scores.rates[place++];
-    if (has_number(board, info.of))
-      rates[info.name] = rate_json(rate);
-  }
+  for (const RateRow& row : rate_rows())
+    if (has_number(board, row.of))
+      rates[row.name] = rate_json(scores.rates.of(row));
   for (const LeaderboardTask task : kLeaderboardTasks)
     passed[std::string(to_string(task))] = passes(scores, task);
   SuiteJson shares = SuiteJson::object();
-  const std::vector<LeaderboardScore> known = leaderboard_scores();
+  const std::vector<std::string_view> known = leaderboard_rates();
   for (std::size_t i = 0; i < scores.shares_of_ceiling.size(); ++i)
     if (!std::isnan(scores.shares_of_ceiling[i]))
-      shares[std::string(known[i].rate)] = scores.shares_of_ceiling[i];
+      shares[std::string(known[i])] = scores.shares_of_ceiling[i];
   SuiteJson json{{"cells", scores.cells},
                  {"answering_cells", scores.answering_cells},
                  {"reason", proper_utf8(scores.reason)},
@@ -52,7 +50,7 @@ SuiteJson scores_json(const Leaderboard& board, const PooledScores& scores) {
                  {"rates", rates}};
   if (board.in_worlds())
     for (const char* const name : {"repair_gain_share", "repair_gain_share_05"})
-      json["estimates"][name] = estimate_json(scores.estimate(name));
+      json["estimates"][name] = estimate_json(scores.estimates[name]);
   return json;
 }
 
@@ -110,7 +108,7 @@ SuiteJson delays_json(const Leaderboard& board, const CellScores& cell) {
   SuiteJson json{{"time_unit", cell.time_unit}, {"methods", SuiteJson::object()}};
   for (std::size_t method = 0; method < board.methods.size(); ++method)
     for (const char* const name : {"detection_delay", "false_alarms_a_day"})
-      json["methods"][board.methods[method]][name] = estimate_json(cell.methods[method].estimate(name));
+      json["methods"][board.methods[method]][name] = estimate_json(cell.methods[method].estimates[name]);
   return json;
 }
 
@@ -139,9 +137,14 @@ std::string leaderboard_json(const Leaderboard& board) {
                        {"all", scores_json(board, board.overall[method])},
                        {"families", along(board, board.families, board.by_family[method])},
                        {"plants", along(board, board.plants, board.by_plant[method])}});
-  for (const MethodRateInfo& info : method_rate_infos())
-    if (has_number(board, info.of))
-      meanings[info.name] = info.meaning;
+  for (const RateRow& row : rate_rows())
+    if (has_number(board, row.of))
+      meanings[row.name] = row.meaning;
+  SuiteJson headings = SuiteJson::object(), columns = SuiteJson::array();
+  for (const MethodNumber& number : method_numbers())
+    headings[number.name] = number.heading;
+  for (const BoardColumn& column : board_columns(board))
+    columns.push_back(column.name);
   for (const LeaderboardTask task : kLeaderboardTasks)
     nobody[std::string(to_string(task))] = passed_by_nobody(board, task);
   SuiteJson json{{"suite", board.suite},
@@ -153,6 +156,8 @@ std::string leaderboard_json(const Leaderboard& board) {
                  {"plants", axis_json(board.plants)},
                  {"families", axis_json(board.families)},
                  {"rates", meanings},
+                 {"headings", headings},
+                 {"columns", columns},
                  {"passed_by_nobody", nobody},
                  {"cells", cells_json(board)},
                  {"methods", methods}};

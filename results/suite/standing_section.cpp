@@ -107,7 +107,7 @@ Section standing_section(const Leaderboard& board) {
   std::vector<Table::Column> heads{{"Method", Table::Align::left}};
   const std::vector<BoardColumn> columns = board_columns(board);
   for (const BoardColumn& column : columns)
-    heads.push_back({std::string(column.title)});
+    heads.push_back({heading_of(column.name)});
   Table table(
       fmt::format("% of all loops with {:g} % interval. Of the faults with an impact: sources named, faults "
                   "found, and the share of the best repair's gain that the named channel brings{}. Of the "
@@ -122,7 +122,7 @@ Section standing_section(const Leaderboard& board) {
       Cell cell(number);
       cell.hover = number.of >= 0 ? fmt::format("{} loops", number.of) : "";
       cell.ground = number.value;
-      cell.low_is_good = column.low_is_good;
+      cell.low_is_good = method_number(column.name).low_is_good;
       if (board.overall[method].answers_in_part() && !std::isnan(number.value))
         cell.mark = "~";
       std::get<Number>(cell.content).of = -1;

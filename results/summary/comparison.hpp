@@ -10,7 +10,7 @@ namespace mpm {
 
 /// The method that is right most often, of those that answer and detect; null when there is none. The first
 /// one wins a tie.
-const MethodFindings* best_method(const StudyFindings& findings, Rate MethodRates::*rate);
+const MethodFindings* best_method(const StudyFindings& findings, std::string_view rate);
 
 /// Is there a method that was right or wrong on some loop?
 bool was_judged(const StudyFindings& findings);
@@ -18,7 +18,10 @@ bool was_judged(const StudyFindings& findings);
 /// Words: which method finds the CV, the source and the channel most often; empty where no loop was judged.
 std::string comparison_answer(const StudyFindings& findings);
 
-/// The rates that matter most, one row a method, for one screen.
+/// The rates that matter most, of those that some loop counts for.
+std::vector<std::string> overview_rates(const StudyFindings& findings);
+
+/// A table of them, one row a method, for one screen.
 Section comparison_overview(const Campaign& campaign, const StudyFindings& findings);
 
 /// How often each method of the campaign is right, side by side, and which of two is right where the other is
@@ -36,6 +39,6 @@ Document comparison_document(const Campaign& campaign, const StudyFindings& find
 void put_comparison(nlohmann::ordered_json& json, const Campaign& campaign, const StudyFindings& findings);
 
 /// The rates that were counted on some loop of some method; the others are empty rows and panels.
-std::vector<MethodRateInfo> counted_rates(const std::vector<MethodFindings>& methods);
+std::vector<const RateRow*> counted_rates(const std::vector<MethodFindings>& methods);
 
 }  // namespace mpm

@@ -12,8 +12,8 @@ using Json = nlohmann::ordered_json;
 
 Json rates_json(const Study& study, const MethodRates& method) {
   Json rates = Json::object();
-  for (const MethodRateInfo& info : method_rate_infos(study))
-    rates[info.name] = rate_json(method.*info.rate);
+  for (const RateRow& row : rows_for(study, rate_rows()))
+    rates[row.name] = rate_json(method.rates.of(row));
   return rates;
 }
 
@@ -38,18 +38,18 @@ Json roc_json(const RocCurve& roc, const Interval& area) {
 /// Null for a threshold of too few loops. An infinite one, too, is null in JSON: no finite score is above it.
 Json thresholds_json(const CalibratedThresholds& thresholds) {
   Json json = Json::object();
-  for (const ThresholdInfo& info : threshold_infos()) {
-    const CalibratedThreshold& threshold = thresholds.*info.threshold;
-    json[info.name] = {{"value", threshold.value ? Json(*threshold.value) : Json(nullptr)},
-                       {"loops", threshold.loops}};
+  for (const ThresholdRow& row : threshold_rows()) {
+    const CalibratedThreshold& threshold = thresholds.*row.threshold;
+    json[row.name] = {{"value", threshold.value ? Json(*threshold.value) : Json(nullptr)},
+                      {"loops", threshold.loops}};
   }
   return json;
 }
 
 Json estimates_json(const Study& study, const MethodRates& rates) {
   Json json = Json::object();
-  for (const MethodEstimateInfo& info : method_estimate_infos(study))
-    json[info.name] = estimate_json(rates.*info.estimate);
+  for (const EstimateRow& row : rows_for(study, estimate_rows()))
+    json[row.name] = estimate_json(rates.estimates.of(row));
   return json;
 }
 
@@ -85,9 +85,16 @@ Json pair_json(const StudyFindings& findings, const MethodPair& pair) {
 
 Json rate_names_json(const Study& study) {
   Json names = Json::object();
-  for (const MethodRateInfo& info : method_rate_infos(study))
-    names[info.name] = info.meaning;
+  for (const RateRow& row : rows_for(study, rate_rows()))
+    names[row.name] = row.meaning;
   return names;
+}
+
+Json headings_json() {
+  Json headings = Json::object();
+  for (const MethodNumber& number : method_numbers())
+    headings[number.name] = number.heading;
+  return headings;
 }
 
 }  // namespace
@@ -104,6 +111,8 @@ void put_comparison(Json& json, const Campaign& campaign, const StudyFindings& f
                {"loops", findings.assessed},
                {"confidence", campaign.study.aggregate.confidence},
                {"rates", rate_names_json(campaign.study)},
+               {"headings", headings_json()},
+               {"columns", overview_rates(findings)},
                {"methods", methods},
                {"pairs", pairs}});
   if (campaign.study.calibration)

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,69 +14,70 @@
 namespace mpm {
 namespace {
 
-struct OverviewColumn {
-  const char* title;
-  Rate MethodRates::*rate;
-  Rate MethodRates::*better = nullptr;  ///< takes its place where some loop counts for it
+/// Rates in the order of reading, each with the one that takes its place where some loop counts for it. Those
+/// that no loop counts for are left out.
+constexpr std::pair<std::string_view, std::string_view> kOverview[] = {
+    {"false_alarm_healthy", ""},    {"detected_impact", "power_05_impact"},
+    {"power_05_impact", ""},        {"located", ""},
+    {"source", "source_05_impact"}, {"source_05_impact", ""},
 };
 
-/// In the order of reading. Those that no loop counts for are left out.
-constexpr OverviewColumn kOverviewColumns[] = {
-    {"Healthy flagged", &MethodRates::false_alarm_healthy},
-    {"Faults found", &MethodRates::detected_impact, &MethodRates::power_05_impact},
-    {"Found at 5 %", &MethodRates::power_05_impact},
-    {"CV located", &MethodRates::located},
-    {"Source right", &MethodRates::source, &MethodRates::source_05_impact},
-    {"Source at 5 %", &MethodRates::source_05_impact},
-};
-
-bool is_counted(const StudyFindings& findings, Rate MethodRates::*rate) {
-  return rate != nullptr &&
+bool is_counted(const StudyFindings& findings, std::string_view rate) {
+  return !rate.empty() &&
          std::any_of(findings.methods.begin(), findings.methods.end(),
-                     [rate](const MethodFindings& method) { return (method.rates.*rate).total > 0; });
+                     [rate](const MethodFindings& method) { return method.rates[rate].total > 0; });
 }
 
 /// "96 [90, 99]", with a mark for a method that answers on a part of the loops only.
-Cell overview_cell(const MethodRates& rates, Rate MethodRates::*rate) {
-  Cell cell = number(rates.*rate, NumberForm::whole_percent);
-  if (rates.answered.value < kFewestAnswers && (rates.*rate).total > 0)
+Cell overview_cell(const MethodRates& rates, std::string_view name) {
+  const Rate& rate = rates[name];
+  Cell cell = number(rate, NumberForm::whole_percent);
+  if (rates["answered"].value < kFewestAnswers && rate.total > 0)
     cell.mark = "~";
   return cell;
 }
 
 }  // namespace
 
-const MethodFindings* best_method(const StudyFindings& findings, Rate MethodRates::*rate) {
+std::vector<std::string> overview_rates(const StudyFindings& findings) {
+  std::vector<std::string> names;
+  for (const auto& [name, better] : kOverview)
+    if (is_counted(findings, name) && !is_counted(findings, better))
+      names.emplace_back(name);
+  return names;
+}
+
+const MethodFindings* best_method(const StudyFindings& findings, std::string_view rate) {
   const MethodFindings* best = nullptr;
   for (const MethodFindings& method : findings.methods)
-    if ((method.rates.*rate).total > 0 && answers_and_detects(method.rates) &&
-        (best == nullptr || (method.rates.*rate).value > (best->rates.*rate).value))
+    if (method.rates[rate].total > 0 && answers_and_detects(method.rates) &&
+        (best == nullptr || method.rates[rate].value > best->rates[rate].value))
       best = &method;
   return best;
 }
 
 bool was_judged(const StudyFindings& findings) {
   return std::any_of(findings.methods.begin(), findings.methods.end(), [](const MethodFindings& method) {
-    return method.rates.located.total > 0 || method.rates.source.total > 0;
+    return method.rates["located"].total > 0 || method.rates["source"].total > 0;
   });
 }
 
 std::string comparison_answer(const StudyFindings& findings) {
   std::string text;
-  const auto best = [&](const char* what, Rate MethodRates::*rate) {
+  const auto best = [&](const char* what, std::string_view rate) {
     if (const MethodFindings* const method = best_method(findings, rate))
       text += fmt::format("{}{} by {}, {}", text.empty() ? "" : "; ", what, code(as_label(method->name())),
-                          share_words(method->rates.*rate));
+                          share_words(method->rates[rate]));
   };
-  best("the CV is found most often", &MethodRates::located);
-  best("the source", &MethodRates::source);
-  best("the channel", &MethodRates::channel);
+  best("the CV is found most often", "located");
+  best("the source", "source");
+  best("the channel", "channel");
   if (text.empty())
     return was_judged(findings)
                ? "No method both answers nearly always and detects most faults, so none is called best."
                : "";
   text.front() = 'T';
-  return text + (is_counted(findings, &MethodRates::false_alarm_healthy)
+  return text + (is_counted(findings, "false_alarm_healthy")
                      ? ". The table shows the false alarms that each one costs."
                      : ". No loop was healthy, so nothing is known of false alarms.");
 }
@@ -83,35 +86,33 @@ Section comparison_overview(const Campaign& campaign, const StudyFindings& findi
   Section section{"comparison", "Which method is right most often?"};
   if (const std::string answer = comparison_answer(findings); !answer.empty())
     section.say(answer);
-  std::vector<OverviewColumn> columns;
-  for (const OverviewColumn& column : kOverviewColumns)
-    if (is_counted(findings, column.rate) && !is_counted(findings, column.better))
-      columns.push_back(column);
+  const std::vector<std::string> columns = overview_rates(findings);
   Table table(
-      fmt::format("% of loops with {:g} % intervals. Found: of the faults with an impact. CV "
-                  "located and source right: of the flagged loops with a fault.{}",
-                  100 * campaign.study.aggregate.confidence,
-                  is_counted(findings, &MethodRates::power_05_impact)
-                      ? " At 5 %: of the faults with an impact, at the threshold calibrated for 5 % false "
-                        "alarms."
-                      : ""),
+      fmt::format(
+          "% of loops with {:g} % intervals. Impact: of the faults with an impact. CV located, and source "
+          "of one fault: of the flagged loops.{}",
+          100 * campaign.study.aggregate.confidence,
+          is_counted(findings, "power_05_impact")
+              ? " At 5 %: of the faults with an impact, at the threshold calibrated for 5 % false "
+                "alarms."
+              : ""),
       {{"Method", Table::Align::left}});
-  for (const OverviewColumn& column : columns)
-    table.columns.push_back({column.title});
-  table.columns.push_back({"ms a loop"});
+  for (const std::string& column : columns)
+    table.columns.push_back({heading_of(column)});
+  table.columns.push_back({kRunTime.heading});
   bool in_part = false;
   std::vector<std::string> silent;
   for (const MethodFindings& method : findings.methods) {
-    if (method.rates.answered.hits == 0) {
+    if (method.rates["answered"].hits == 0) {
       silent.push_back(method.name());
       continue;
     }
     std::vector<Cell> cells{as_label(method.name())};
-    for (const OverviewColumn& column : columns)
-      cells.push_back(overview_cell(method.rates, column.rate));
+    for (const std::string& column : columns)
+      cells.push_back(overview_cell(method.rates, column));
     cells.emplace_back(Number{method.rates.milliseconds});
     table.row(std::move(cells));
-    in_part = in_part || method.rates.answered.value < kFewestAnswers;
+    in_part = in_part || method.rates["answered"].value < kFewestAnswers;
   }
   if (!table.rows.empty())
     section.add(std::move(table));

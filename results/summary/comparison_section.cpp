@@ -61,19 +61,19 @@ Table rates_table(const Study& study, const Methods& methods) {
                                  "counted. Rates without a loop are left out.",
                                  100 * study.aggregate.confidence),
                      "% of loops", methods);
-  for (const MethodRateInfo& info : counted_rates(methods))
-    table.row(info.title,
-              [&](const MethodFindings& m) { return number_of(m.rates.*info.rate, NumberForm::percent); });
-  table.row("false alarms stated", stated_cell);
-  table.row("area under ROC, fault",
-            [](const MethodFindings& m) { return area(m.rates.roc, m.rates.roc_area); });
-  table.row("area under ROC, impact",
-            [](const MethodFindings& m) { return area(m.rates.roc_impact, m.rates.roc_impact_area); });
-  for (const MethodEstimateInfo& info : method_estimate_infos())
+  for (const RateRow* const row : counted_rates(methods))
+    table.row(row->heading, [&](const MethodFindings& m) {
+      return number_of(m.rates.rates.of(*row), NumberForm::percent);
+    });
+  table.row("False alarms stated", stated_cell);
+  for (const AreaRow& row : area_rows())
+    table.row(row.heading,
+              [&](const MethodFindings& m) { return area(m.rates.*row.curve, m.rates.*row.interval); });
+  for (const EstimateRow& row : estimate_rows())
     if (std::any_of(methods.begin(), methods.end(),
-                    [&](const MethodFindings& m) { return (m.rates.*info.estimate).count > 0; }))
-      table.row(info.title, [&](const MethodFindings& m) { return number_of(m.rates.*info.estimate); });
-  table.row("ms a loop, median", [](const MethodFindings& m) -> Cell {
+                    [&](const MethodFindings& m) { return m.rates.estimates.of(row).count > 0; }))
+      table.row(row.heading, [&](const MethodFindings& m) { return number_of(m.rates.estimates.of(row)); });
+  table.row(kRunTime.heading, [](const MethodFindings& m) -> Cell {
     return std::isnan(m.rates.milliseconds) ? "-" : fmt::format("{:.2f}", m.rates.milliseconds);
   });
   return table.take();
@@ -93,21 +93,21 @@ void add_marks(Section& section, const Methods& methods) {
 /// On what the thresholds were calibrated, what they are, and where the loops were too few.
 void add_calibration(Section& section, const Campaign& campaign, const Methods& methods) {
   const CalibrationOptions& options = *campaign.study.calibration;
-  MethodsTable table(
-      fmt::format("Thresholds from {} healthy loops and {} with a disturbance, seed {}; \"calibrated: false "
-                  "alarms\" is at the threshold for {:g} %.",
-                  options.healthy, options.ud, campaign.calibration.seed, 100 * options.false_alarms),
-      "threshold", methods);
-  for (const ThresholdInfo& info : threshold_infos())
-    table.row(info.meaning, [&](const MethodFindings& m) {
-      return Number{(m.rates.thresholds.*info.threshold).value.value_or(kNaN)};
+  MethodsTable table(fmt::format("Thresholds from {} healthy loops and {} with a disturbance, seed {}; {} is "
+                                 "at the threshold for {:g} %.",
+                                 options.healthy, options.ud, campaign.calibration.seed,
+                                 heading_of("false_alarm_calibrated"), 100 * options.false_alarms),
+                     "threshold", methods);
+  for (const ThresholdRow& row : threshold_rows())
+    table.row(row.meaning, [&](const MethodFindings& m) {
+      return Number{(m.rates.thresholds.*row.threshold).value.value_or(kNaN)};
     });
   section.add(table.take());
   for (const MethodFindings& method : methods)
-    for (const ThresholdInfo& info : threshold_infos())
-      if (const CalibratedThreshold& threshold = method.rates.thresholds.*info.threshold;
+    for (const ThresholdRow& row : threshold_rows())
+      if (const CalibratedThreshold& threshold = method.rates.thresholds.*row.threshold;
           !threshold.value && threshold.loops > 0)
-        section.say(fmt::format("no {} for {}: {} calibration loops with a verdict are too few", info.name,
+        section.say(fmt::format("no {} for {}: {} calibration loops with a verdict are too few", row.name,
                                 as_label(method.name()), threshold.loops));
 }
 
@@ -121,7 +121,7 @@ void add_unanswered(Section& section, const Study& study, const Methods& methods
     if (!rates.reason.empty())
       sentences.words.push_back(fmt::format(
           "{}: no verdict on {} of {} loops, the first because: {}", as_label(method.name()),
-          rates.answered.total - rates.answered.hits, rates.answered.total, as_label(rates.reason)));
+          rates["answered"].total - rates["answered"].hits, rates["answered"].total, as_label(rates.reason)));
   }
   if (!sentences.words.empty())
     section.add(std::move(sentences));
@@ -151,12 +151,12 @@ void add_pairs(Section& section, bool in_worlds, const StudyFindings& findings) 
 
 }  // namespace
 
-std::vector<MethodRateInfo> counted_rates(const Methods& methods) {
-  std::vector<MethodRateInfo> counted;
-  for (const MethodRateInfo& info : method_rate_infos())
+std::vector<const RateRow*> counted_rates(const Methods& methods) {
+  std::vector<const RateRow*> counted;
+  for (const RateRow& row : rate_rows())
     if (std::any_of(methods.begin(), methods.end(),
-                    [&](const MethodFindings& m) { return (m.rates.*info.rate).total > 0; }))
-      counted.push_back(info);
+                    [&](const MethodFindings& m) { return m.rates.rates.of(row).total > 0; }))
+      counted.push_back(&row);
   return counted;
 }
 

@@ -61,7 +61,7 @@ bool is_in_table(const StudyFindings& findings, const Finding& row) {
       row.group == FindingGroup::method)
     return false;
   // A method that answers no loop, for want of setpoints perhaps, has nothing to show.
-  return is_own(findings, row.method) || findings.of(row.method)->rates.answered.hits > 0;
+  return is_own(findings, row.method) || findings.of(row.method)->rates["answered"].hits > 0;
 }
 
 std::string heading_of(const StudyFindings& findings, const Finding& row) {

@@ -60,10 +60,10 @@ def table(heads, rows):
 
 
 def columns(board, wanted, silent):
-    """(heads, cell of a method) for each (title, rate, families) of the families that the board has."""
+    """(heads, cell of a method) for each (rate, families) of the families that the board has."""
     found = []
-    for title, rate, families in wanted:
-        first = True
+    for rate, families in wanted:
+        title, first = board["headings"][rate], True
         for family in families:
             if family != "all" and family not in [each["name"] for each in board["families"]]:
                 continue
@@ -85,9 +85,9 @@ def ranking(board):
     """Methods by the source of the faults with an impact, at equal false alarms; then by the gain of repairs."""
     methods = {method["name"]: method for method in board["methods"]}
     heads, cells = columns(board, [
-        ("right source of the faults with an impact", "source_05_impact", ["all", "exact", "errors", "worlds", "mixed"]),
-        ("share of the best repair's gain", "repair_gain_share_05", ["all", "exact", "errors", "worlds", "mixed"]),
-        ("healthy, flagged", "false_alarm_calibrated", ["all"])],
+        ("source_05_impact", ["all", "exact", "errors", "worlds", "mixed"]),
+        ("repair_gain_share_05", ["all", "exact", "errors", "worlds", "mixed"]),
+        ("false_alarm_calibrated", ["all"])],
         {"source_05_impact": "names none", "repair_gain_share_05": "names none"})
     return table(["method", "rank by source", "rank by repair", *heads], [
         [f"`{entry['method']}`", rank(entry, "source_05_impact"), rank(entry, "repair_gain_share_05"),
@@ -97,11 +97,10 @@ def ranking(board):
 def detection(board):
     """What methods flag, and what of it is right at their own thresholds."""
     heads, cells = columns(board, [
-        ("healthy, flagged", "false_alarm_healthy", ["exact", "worlds"]),
-        ("impact found at 5 % false alarms", "power_05_impact",
-         ["exact", "errors", "worlds", "inputs", "growing", "mixed"]),
-        ("flagged at 5 % false alarms", "power_05", ["drift"]),
-        ("right source of all faults", "source_all", ["exact", "errors", "worlds", "mixed"])],
+        ("false_alarm_healthy", ["exact", "worlds"]),
+        ("power_05_impact", ["exact", "errors", "worlds", "inputs", "growing", "mixed"]),
+        ("power_05", ["drift"]),
+        ("source_all", ["exact", "errors", "worlds", "mixed"])],
         {"source_all": "names none"})
     return table(["method", *heads], [
         [f"`{method['name']}`" if method["name"] != REFERENCE else "reference", *(cell(method) for cell in cells)]
@@ -112,18 +111,18 @@ def readme(board):
     """The methods that name sources, best first, and then the others."""
     methods = {method["name"]: method for method in board["methods"]}
     heads, cells = columns(board, [
-        ("healthy, flagged", "false_alarm_healthy", ["all"]), ("impact found", "power_05_impact", ["all"]),
-        ("right source", "source_05_impact", ["all"]), ("share of the best repair", "repair_gain_share_05", ["all"])],
+        ("false_alarm_healthy", ["all"]), ("power_05_impact", ["all"]),
+        ("source_05_impact", ["all"]), ("repair_gain_share_05", ["all"])],
         {"source_05_impact": "names none", "repair_gain_share_05": "names none"})
     return table(["method", *(head.removesuffix(": all") for head in heads)], [
         [f"`{entry['method']}`, {ORIGINS[entry['method']]}", *(cell(methods[entry["method"]]) for cell in cells)]
         for entry in board["ranking"]])
 
 
-def curve(cells):
+def curve(board, cells):
     """The learned reference by the number of its training loops."""
-    rates = {"source_05_impact": "right source of the faults with an impact", "power_05_impact": "impact found",
-             "false_alarms": "healthy, flagged", "right": "right answer of all loops"}
+    rates = {name: board["headings"][name] for name in ("source_05_impact", "power_05_impact")}
+    rates |= {"false_alarms": board["headings"]["false_alarm_calibrated"], "right": "right answer of all loops"}
     return table(["cell", "classifier", "trained on (worlds)", *rates.values()], [
         [f"`{cell['cell']}`", cell["classifier"], f"{each['loops']} ({each['worlds']})",
          *(percents(each.get(rate)) or "-" for rate in rates)] for cell in cells for each in cell["curve"]])
@@ -170,7 +169,7 @@ def pages(program, sources):
     """The pages as they should be, by path."""
     standard, cells = finished(program, "standard"), json.loads((sources / LEARNED).read_text())
     tables = {"README.md": {"standard": readme(standard)},
-              "docs/suite.md": {"detection": detection(standard), "ranking": ranking(standard), "curve": curve(cells),
+              "docs/suite.md": {"detection": detection(standard), "ranking": ranking(standard), "curve": curve(standard, cells),
                                 "learned": learned(cells)},
               "docs/suite_exact.md": {"exact": exact(finished(program, "exact"))}}
     return {sources / name: with_tables((sources / name).read_text(encoding="utf-8"), of_page)

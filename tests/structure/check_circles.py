@@ -9,10 +9,6 @@ import ast
 import check_includes
 import tree
 
-# Circles that stay for now, and why.
-EXCEPTIONS = {("analysis/findings/loop_outcome", "analysis/findings/method_rates"):
-              "each rate of outcomes is a member of MethodRates, and MethodRates has a letter for each outcome"}
-
 
 def unit(path):
     return str(path.with_suffix(""))
@@ -84,13 +80,11 @@ def circles(graph):
 
 def check(root):
     files, (modules, complaints) = include_graph(root), import_graph(root)
-    found = {tuple(sorted(members)): graph for graph in (files, modules) for members in circles(graph)}
-    for members, graph in found.items():
-        if members not in EXCEPTIONS:
+    for graph in (files, modules):
+        for members in map(sorted, circles(graph)):
             where = next(where for name, where in graph[members[0]].items() if name in members)
             complaints.append(f"{where}: a circle of {', '.join(members)}")
-    return complaints + [f"{members[0]}: no circle any more, but among the EXCEPTIONS of check_circles.py"
-                         for members in EXCEPTIONS if members not in found and set(members) <= files.keys()]
+    return complaints
 
 
 if __name__ == "__main__":

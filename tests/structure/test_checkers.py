@@ -208,12 +208,6 @@ class Circles(CheckerTest):
                                                      "plants/c.hpp": '#include "plants/a.hpp"\n'},
                         "plants/a.hpp:1:", "a circle of plants/a, plants/b, plants/c")
 
-    def test_an_exception_goes_with_its_circle(self):
-        (left, right), = check_circles.EXCEPTIONS
-        files = {f"{left}.hpp": f'#include "{right}.hpp"\n', f"{right}.hpp": HEADER}
-        self.assert_clean(check_circles, files | {f"{right}.cpp": f'#include "{left}.hpp"\n'})
-        self.assert_one(check_circles, files, f"{left}:", "no circle any more")
-
     def test_modules_of_the_package(self):
         modules = {"python/mpmbench/a.py": "from . import b\n", "python/mpmbench/b.py": "import json\n"}
         self.assert_clean(check_circles, modules)

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,11 +19,8 @@ using HitsOf = std::map<std::string, std::pair<std::int64_t, std::int64_t>>;  //
 
 MethodScores scores_with(const HitsOf& hits_of) {
   MethodScores scores;
-  for (const MethodRateInfo& info : method_rate_infos()) {
-    const auto found = hits_of.find(info.name);
-    scores.rates.push_back(found == hits_of.end() ? rate(0, 0)
-                                                  : rate(found->second.first, found->second.second));
-  }
+  for (const auto& [name, hits] : hits_of)
+    scores.rates[name] = rate(hits.first, hits.second);
   return scores;
 }
 
@@ -68,19 +66,19 @@ TEST_CASE("loops of the cells are added up, by family, by plant and over all", "
   REQUIRE(board.plants.size() == 2);  // b has no cell
   CHECK(board.plants[1].name == "c");
   CHECK(board.cells[1].plant == 1);
-  const Rate* const f = board.by_family[0][0].of("detected_impact");
-  CHECK(f->hits == 10);
-  CHECK(f->total == 16);
-  CHECK(f->value == 0.625);
+  const Rate& f = board.by_family[0][0]["detected_impact"];
+  CHECK(f.hits == 10);
+  CHECK(f.total == 16);
+  CHECK(f.value == 0.625);
   // Wilson's interval of 10 of 16, from its formula with z = 1.95996.
-  CHECK(f->interval.lower == Approx(0.38641).margin(1e-5));
-  CHECK(f->interval.upper == Approx(0.81519).margin(1e-5));
+  CHECK(f.interval.lower == Approx(0.38641).margin(1e-5));
+  CHECK(f.interval.upper == Approx(0.81519).margin(1e-5));
   CHECK(board.by_family[0][0].cells == 2);
   CHECK(board.by_family[0][0].answering_cells == 1);
-  CHECK(board.by_plant[0][1].of("detected_impact")->hits == 9);
-  CHECK(board.by_plant[0][1].of("detected_impact")->total == 16);
-  CHECK(board.overall[0].of("detected_impact")->total == 20);
-  CHECK(board.overall[0].of("no_such_rate") == nullptr);
+  CHECK(board.by_plant[0][1]["detected_impact"].hits == 9);
+  CHECK(board.by_plant[0][1]["detected_impact"].total == 16);
+  CHECK(board.overall[0]["detected_impact"].total == 20);
+  CHECK_THROWS_AS(board.overall[0]["no_such_rate"], std::out_of_range);
 }
 
 TEST_CASE("the reference counts in the families that are its own alone, and shares of it stand there",
@@ -96,10 +94,10 @@ TEST_CASE("the reference counts in the families that are its own alone, and shar
   suite.families[0].has_reference = true;
   const Leaderboard board = make_leaderboard(suite, {"m", "ceiling"}, "1.0", cells);
   CHECK(has_reference(board));
-  const std::vector<LeaderboardScore> known = leaderboard_scores();
+  const std::vector<std::string_view> known = leaderboard_rates();
   const auto share = [&](const PooledScores& scores, std::string_view rate) {
     for (std::size_t i = 0; i < known.size(); ++i)
-      if (known[i].rate == rate)
+      if (known[i] == rate)
         return scores.shares_of_ceiling.at(i);
     return 0.0;
   };
@@ -109,10 +107,10 @@ TEST_CASE("the reference counts in the families that are its own alone, and shar
   CHECK(std::isnan(share(board.by_family[0][0], "false_alarm_healthy")));  // low is good
   CHECK(board.by_family[0][1].shares_of_ceiling.empty());
   CHECK(board.by_family[1][1].cells == 0);
-  CHECK(board.by_family[1][1].of("located")->total == 0);
+  CHECK(board.by_family[1][1]["located"].total == 0);
   CHECK(board.by_plant[1][0].cells == 0);
   CHECK(board.overall[1].cells == 0);
-  CHECK(board.overall[0].of("located")->total == 20);
+  CHECK(board.overall[0]["located"].total == 20);
   CHECK(board.overall[0].shares_of_ceiling.empty());
   CHECK_FALSE(has_reference(make_leaderboard(suite, {"m", "n"}, "1.0", cells)));
   CHECK_FALSE(has_reference(make_leaderboard(two_families(), {"m", "ceiling"}, "1.0", cells)));
@@ -125,20 +123,18 @@ TEST_CASE("a cell that was not run counts nowhere, and keeps its place", "[leade
                         {.plant = 1, .family = 1, .trouble = "the basis case fails"}});
   CHECK(board.families.size() == 1);
   CHECK(board.by_family[0][0].cells == 1);
-  CHECK(board.by_family[0][0].of("answered")->total == 4);
+  CHECK(board.by_family[0][0]["answered"].total == 4);
   CHECK(board.cells[1].trouble == "the basis case fails");
   CHECK(board.by_plant[0][1].cells == 0);
-  CHECK(board.by_plant[0][1].of("answered")->total == 0);
+  CHECK(board.by_plant[0][1]["answered"].total == 0);
 }
 
 TEST_CASE("a suite of worlds ranks its methods by source and by the gain of repairs at equal false alarms",
           "[leaderboard]") {
   const auto scores = [](std::int64_t told, std::int64_t of, double gain) {
     MethodScores made = scores_with({{"source_05_impact", {told, of}}, {"answered", {10, 10}}});
-    for (const MethodEstimateInfo& info : method_estimate_infos())
-      made.estimates.push_back(std::string_view(info.name) == kRankingRepair && gain >= 0.0
-                                   ? clustered_mean(std::vector<ClusterSum>{{gain, 2}, {gain, 2}})
-                                   : Estimate{});
+    if (gain >= 0.0)
+      made.estimates[kRankingRepair] = clustered_mean(std::vector<ClusterSum>{{gain, 2}, {gain, 2}});
     return made;
   };
   std::vector<CellScores> cells{
@@ -153,10 +149,10 @@ TEST_CASE("a suite of worlds ranks its methods by source and by the gain of repa
   const Leaderboard board =
       make_leaderboard(two_families(), {"a", "silent", "best", "channels"}, "1.0", cells);
   CHECK(board.in_worlds());
-  const Estimate pooled = board.overall[0].estimate(kRankingRepair);
+  const Estimate pooled = board.overall[0].estimates[kRankingRepair];
   CHECK(pooled.value == Approx(2.0 / 8.0));
   CHECK(pooled.count == 8);
-  CHECK(board.by_plant[0][1].estimate(kRankingRepair).value == 0.0);
+  CHECK(board.by_plant[0][1].estimates[kRankingRepair].value == 0.0);
   const std::vector<RankedMethod> ranked = ranking(board);
   REQUIRE(ranked.size() == 4);
   CHECK((ranked[0].method == 2 && ranked[0].source == 1 && ranked[0].repair == 2));

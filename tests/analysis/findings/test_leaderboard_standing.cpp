@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -21,16 +22,16 @@ Suite one_cell() {
 
 /// A method above the threshold on the first `hits` loops of `loops`, all of which have a mismatch with an
 /// impact.
-std::string above_on_first(int hits, int loops) {
-  const char above = letter_of(LoopOutcome{.answered = true, .above_05 = true}),
-             below = letter_of(LoopOutcome{.answered = true});
-  return std::string(hits, above) + std::string(loops - hits, below);
+LoopOutcomes above_on_first(std::size_t hits, std::size_t loops) {
+  LoopOutcomes outcomes(loops, LoopOutcome{.answered = true});
+  std::fill_n(outcomes.begin(), hits, LoopOutcome{.answered = true, .above_05 = true});
+  return outcomes;
 }
 
-Leaderboard board_of(const std::vector<std::string>& names, const std::vector<std::string>& outcomes,
+Leaderboard board_of(const std::vector<std::string>& names, const std::vector<LoopOutcomes>& outcomes,
                      const std::vector<OutcomeScope>& scopes) {
   const std::size_t loops = outcomes.front().size();
-  CellScores cell{.truths = std::string(loops, letter_of(FaultTruth{ExperimentKind::mpm, true, true})),
+  CellScores cell{.truths = LoopTruths(loops, FaultTruth{ExperimentKind::mpm, true, true}),
                   .worlds = std::vector<int>(loops, 0)};
   for (std::size_t i = 0; i < names.size(); ++i)
     cell.methods.push_back(scores_of_outcomes(cell, outcomes[i], scopes[i]));
@@ -41,11 +42,11 @@ Leaderboard board_of(const std::vector<std::string>& names, const std::vector<st
 
 TEST_CASE("the outcomes of a cell make its rates", "[leaderboard]") {
   const Leaderboard board = board_of({"m"}, {above_on_first(30, 40)}, {kPower});
-  CHECK(board.overall[0].of("power_05_impact")->hits == 30);
-  CHECK(board.overall[0].of("power_05_impact")->total == 40);
-  CHECK(board.overall[0].of("answered")->hits == 40);
-  CHECK(board.overall[0].of("detected")->hits == 0);
-  CHECK(board.overall[0].of("source_all")->total == 0);  // it tells no sources
+  CHECK(board.overall[0]["power_05_impact"].hits == 30);
+  CHECK(board.overall[0]["power_05_impact"].total == 40);
+  CHECK(board.overall[0]["answered"].hits == 40);
+  CHECK(board.overall[0]["detected"].hits == 0);
+  CHECK(board.overall[0]["source_all"].total == 0);  // it tells no sources
 }
 
 TEST_CASE("a method is paired with the others on the same loops", "[leaderboard]") {
@@ -70,15 +71,15 @@ TEST_CASE("a method is paired with the others on the same loops", "[leaderboard]
 }
 
 TEST_CASE("loops that one of two methods has not seen do not pair them", "[leaderboard]") {
-  std::string half = above_on_first(40, 40);
-  half.replace(0, 20, 20, kNoLoop);
+  LoopOutcomes half = above_on_first(40, 40);
+  std::fill_n(half.begin(), 20, std::nullopt);
   const Leaderboard board = board_of({"half", "mine"}, {half, above_on_first(30, 40)}, {kPower, kPower});
   const auto standing = standing_of(board, 1);
   REQUIRE(standing);
   CHECK(standing->duels[0].loops == 20);
   CHECK(standing->duels[0].difference.value == Approx(-0.5));  // 10 of the last 20 against 20
   CHECK(standing->lost() == 1);
-  CHECK(board.overall[0].of("answered")->total == 20);
+  CHECK(board.overall[0]["answered"].total == 20);
 }
 
 }  // namespace mpm

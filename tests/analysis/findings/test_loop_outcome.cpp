@@ -1,5 +1,4 @@
 #include <set>
-#include <string>
 
 #include <catch2/catch.hpp>
 
@@ -7,36 +6,52 @@
 
 namespace mpm {
 
-TEST_CASE("every truth has a letter of its own, and comes back from it", "[outcome]") {
-  std::set<char> letters;
-  for (int kind = 0; kind <= static_cast<int>(ExperimentKind::other); ++kind)
-    for (const bool impact : {false, true})
-      for (const bool one_cv : {false, true}) {
-        const FaultTruth truth{static_cast<ExperimentKind>(kind), impact, one_cv};
-        if (!truth.faulty() && (impact || one_cv))
-          continue;
-        CHECK(letters.insert(letter_of(truth)).second);
-        CHECK(fault_truth(letter_of(truth)) == truth);
-      }
-  CHECK(letters.count(kNoLoop) == 0);
+TEST_CASE("every fact of an outcome is put back as it was taken out, and is one of its own", "[outcome]") {
+  LoopOutcome all;
+  for (const OutcomeFact& fact : outcome_facts()) {
+    LoopOutcome one;
+    fact.set(one, 1);
+    CHECK(fact.get(one) == 1);
+    unsigned others = 0;
+    for (const OutcomeFact& other : outcome_facts())
+      others += other.get(one);
+    CHECK(others == 1);
+    CHECK(fact.get(all) == 0);
+    fact.set(all, 1);
+    fact.set(one, 3);
+    CHECK((fact.bits == 1 ? fact.get(one) == 1 : fact.get(one) == 0));  // no verdict has this number
+  }
+  // A member that is in no fact is missing here.
+  const auto& [answered, flagged, above_05, above_chosen, right_cv, right_source, above_01, above_not_mpm,
+               names_source, channel, parameter, size, candidate, window] = all;
+  for (const bool member : {answered, flagged, above_05, above_chosen, right_cv, right_source, above_01,
+                            above_not_mpm, names_source})
+    CHECK(member);
+  for (const Correctness member : {channel, parameter, size, candidate, window})
+    CHECK(member == Correctness::wrong);
 }
 
-TEST_CASE("every outcome comes back from its letter, and other characters are none", "[outcome]") {
-  int known = 0;
-  for (int byte = 0; byte < 256; ++byte) {
-    const char letter = static_cast<char>(byte);
-    if (const auto outcome = loop_outcome(letter)) {
-      ++known;
-      CHECK(letter_of(*outcome) == letter);
-      CHECK((outcome->answered || letter == 'A'));
-      CHECK((outcome->flagged || !outcome->right_cv));
-    }
-  }
-  // Without an answer one; with one 2^5, less the quarter with a right CV that is not flagged.
-  CHECK(known == 1 + 24);
-  CHECK_FALSE(loop_outcome(kNoLoop).has_value());
-  CHECK_FALSE(fault_truth('!').has_value());
-  CHECK_FALSE(fault_truth('/').has_value());  // more bits than a truth has
+TEST_CASE("a method says nothing that it cannot, and nothing right of what is not there", "[outcome]") {
+  const FaultTruth fault{ExperimentKind::mpm, true, true}, healthy{};
+  const OutcomeScope scope{.locates_cvs = true, .tells_sources = true, .at_05 = true};
+  const auto possible = [&](const LoopOutcome& said, const FaultTruth& truth) {
+    return is_possible(said, truth, scope);
+  };
+  CHECK(possible({}, fault));
+  CHECK_FALSE(possible({.flagged = true}, fault));  // without an answer
+  CHECK(possible(
+      {.answered = true, .flagged = true, .above_05 = true, .right_cv = true, .right_source = true}, fault));
+  CHECK_FALSE(possible({.answered = true, .above_chosen = true}, fault));  // there is no such threshold
+  CHECK_FALSE(possible({.answered = true, .right_cv = true}, fault));      // of a loop that is not flagged
+  CHECK_FALSE(possible({.answered = true, .right_source = true}, healthy));
+  CHECK_FALSE(possible({.answered = true, .names_source = true}, fault));
+  CHECK(possible(
+      {.answered = true, .flagged = true, .parameter = Correctness::right, .size = Correctness::wrong},
+      fault));
+  CHECK_FALSE(possible({.answered = true, .flagged = true, .size = Correctness::wrong}, fault));
+  CHECK_FALSE(possible({.answered = true, .channel = Correctness::right}, fault));
+  CHECK_FALSE(possible({.answered = true, .channel = Correctness::wrong}, healthy));
+  CHECK_FALSE(possible({.answered = true, .window = Correctness::right}, healthy));
 }
 
 }  // namespace mpm

@@ -1,11 +1,14 @@
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 
 #include <catch2/catch.hpp>
 
+#include "analysis/findings/method_pairs.hpp"
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/methods/literature/badwe2009.hpp"
 #include "analysis/methods/method_table.hpp"
@@ -97,20 +100,20 @@ TEST_CASE("rates of a method: every loop is counted where it belongs", "[method_
   made.add(without_impact, verdict(false), verdict(false));
 
   const MethodRates rates = made.rates();
-  check_rate(rates.answered, 11, 13);
-  check_rate(rates.detected, 6, 9);
-  check_rate(rates.detected_mpm, 3, 4);
-  check_rate(rates.detected_ud, 2, 4);
-  check_rate(rates.detected_impact, 6, 8);
-  check_rate(rates.flagged_without_impact, 0, 1);
-  check_rate(rates.false_alarm_healthy, 1, 2);
-  check_rate(rates.false_alarm_tuning, 0, 0);
-  check_rate(rates.located, 5, 6);
-  check_rate(rates.source, 3, 5);
-  check_rate(rates.channel, 0, 0);  // the method names none
+  check_rate(rates["answered"], 11, 13);
+  check_rate(rates["detected"], 6, 9);
+  check_rate(rates["detected_mpm"], 3, 4);
+  check_rate(rates["detected_ud"], 2, 4);
+  check_rate(rates["detected_impact"], 6, 8);
+  check_rate(rates["flagged_without_impact"], 0, 1);
+  check_rate(rates["false_alarm_healthy"], 1, 2);
+  check_rate(rates["false_alarm_tuning"], 0, 0);
+  check_rate(rates["located"], 5, 6);
+  check_rate(rates["source"], 3, 5);
+  check_rate(rates["channel"], 0, 0);  // the method names none
   const Interval wilson = wilson_interval(6, 9, study().aggregate.confidence);
-  CHECK(rates.detected.interval.lower == wilson.lower);
-  CHECK(rates.detected.interval.upper == wilson.upper);
+  CHECK(rates["detected"].interval.lower == wilson.lower);
+  CHECK(rates["detected"].interval.upper == wilson.upper);
 }
 
 TEST_CASE("rates of a method: faults are told three ways, over all of them", "[method_rates]") {
@@ -125,15 +128,15 @@ TEST_CASE("rates of a method: faults are told three ways, over all of them", "[m
   made.add(kUd, no_verdict(AssessmentStatus::failed));        // no source
   made.add(kUd, no_verdict(AssessmentStatus::not_assessed));  // nobody asked
   made.add(kNone, verdict(true, 1, 1, kIsMpm));               // no fault
-  check_rate(made.rates().source_all, 3, 8);
-  check_rate(made.rates().abstained, 3, 8);
+  check_rate(made.rates()["source_all"], 3, 8);
+  check_rate(made.rates()["abstained"], 3, 8);
 
   Case tells_none;
   const auto form = testing::form_of(study(), "sse");
   REQUIRE_FALSE(form->method().tells_sources);
   tells_none.add(kMpm, testing::verdict(form, true, 1.0, 1));
-  check_rate(tells_none.rates().source_all, 0, 0);
-  check_rate(tells_none.rates().abstained, 0, 0);
+  check_rate(tells_none.rates()["source_all"], 0, 0);
+  check_rate(tells_none.rates()["abstained"], 0, 0);
 }
 
 TEST_CASE("rates of a method: of another fault the word for it is right, and a flag without a source",
@@ -149,8 +152,8 @@ TEST_CASE("rates of a method: of another fault the word for it is right, and a f
   made.add(other_record(3), verdict(true, 1, 1, kIsUd), verdict(false));
   made.add(other_record(4), verdict(false, 1, 1, FaultSource::other), verdict(false));  // not flagged
   made.add(kMpm, verdict(true, 1, 1, FaultSource::other));
-  check_rate(made.rates().source_all, 2, 5);
-  check_rate(made.rates().abstained, 2, 5);
+  check_rate(made.rates()["source_all"], 2, 5);
+  check_rate(made.rates()["abstained"], 2, 5);
 }
 
 TEST_CASE("rates of a method: what could not be had is said by part of the study", "[method_rates]") {
@@ -163,7 +166,7 @@ TEST_CASE("rates of a method: what could not be had is said by part of the study
   REQUIRE(parts.size() == 2);
   CHECK((parts[0].name == std::string("calibration") && parts[1].name == std::string("windows")));
   rates.thresholds.not_mpm.loops = 1;
-  rates.false_alarms_a_day.count = 1;
+  rates.estimates["false_alarms_a_day"].count = 1;
   CHECK(unanswered_parts(both, rates).empty());
 }
 
@@ -190,7 +193,7 @@ TEST_CASE("false alarms are marked when their interval does not hold what the me
   MethodDescription method;
   MethodRates rates{};
   CHECK(false_alarm_mark(method, rates) == FalseAlarmMark::none);  // nothing was looked at
-  rates.false_alarm_healthy = rate(10, 100);                       // 5.5 to 17.4 %
+  rates["false_alarm_healthy"] = rate(10, 100);                    // 5.5 to 17.4 %
   CHECK(false_alarm_mark(method, rates) == FalseAlarmMark::more);  // than the usual 5 %
   method.stated_false_alarms = 0.1;
   CHECK(false_alarm_mark(method, rates) == FalseAlarmMark::none);
@@ -209,25 +212,25 @@ TEST_CASE("false alarms are marked when their interval does not hold what the me
 
 TEST_CASE("the best method is one that answers and detects", "[method_rates]") {
   MethodRates rates{};
-  rates.answered = rate(95, 100, 0.95);
-  rates.detected = rate(20, 80, 0.95);
-  rates.detected_impact = rate(18, 30, 0.95);
-  rates.false_alarm_healthy = rate(1, 20, 0.95);
-  rates.located = rates.source = rate(20, 20, 0.95);
+  rates["answered"] = rate(95, 100, 0.95);
+  rates["detected"] = rate(20, 80, 0.95);
+  rates["detected_impact"] = rate(18, 30, 0.95);
+  rates["false_alarm_healthy"] = rate(1, 20, 0.95);
+  rates["located"] = rates["source"] = rate(20, 20, 0.95);
   CHECK(answers_and_detects(rates));
   MethodRates silent = rates;
-  silent.detected_impact = rate(2, 30, 0.95);
+  silent["detected_impact"] = rate(2, 30, 0.95);
   CHECK_FALSE(answers_and_detects(silent));
   MethodRates absent = rates;
-  absent.answered = rate(80, 100, 0.95);
+  absent["answered"] = rate(80, 100, 0.95);
   CHECK_FALSE(answers_and_detects(absent));
   MethodRates indifferent = rates;
-  indifferent.false_alarm_healthy = rate(19, 20, 0.95);
+  indifferent["false_alarm_healthy"] = rate(19, 20, 0.95);
   CHECK_FALSE(answers_and_detects(indifferent));
   MethodRates without_impact = rates;
-  without_impact.detected_impact = rate(0, 0, 0.95);
+  without_impact["detected_impact"] = rate(0, 0, 0.95);
   CHECK_FALSE(answers_and_detects(without_impact));
-  without_impact.detected = rate(50, 80, 0.95);
+  without_impact["detected"] = rate(50, 80, 0.95);
   CHECK(answers_and_detects(without_impact));
 }
 
@@ -242,9 +245,9 @@ TEST_CASE("rates of a method: a loop with bad tuning is no healthy one, and not 
     made.add(tuned, verdict(flagged, 3.0), verdict(false));
   }
   const MethodRates rates = made.rates();
-  check_rate(rates.false_alarm_tuning, 2, 3);
-  check_rate(rates.false_alarm_healthy, 0, 1);
-  check_rate(rates.detected, 1, 1);
+  check_rate(rates["false_alarm_tuning"], 2, 3);
+  check_rate(rates["false_alarm_healthy"], 0, 1);
+  check_rate(rates["detected"], 1, 1);
   CHECK(rates.roc.area == 1.0);
   CHECK(rates.roc.negatives == 1);
 }
@@ -256,8 +259,8 @@ TEST_CASE("rates of a method: a flagged loop with several affected CVs has no on
   two.draw.disturbances.push_back({3, 1.0, 50.0});
   REQUIRE(two.draw.true_cv() == -1);
   made.add(two, verdict(true, 1, 1, kIsUd), verdict(false));
-  check_rate(made.rates().located, 0, 0);
-  check_rate(made.rates().source, 1, 1);
+  check_rate(made.rates()["located"], 0, 0);
+  check_rate(made.rates()["source"], 1, 1);
 }
 
 TEST_CASE("rates of a method: channels are counted for methods that name them, under one mismatch of an MV",
@@ -280,7 +283,7 @@ TEST_CASE("rates of a method: channels are counted for methods that name them, u
     of_md.draw.mismatches[0].input = study().mv_count();
     made.add(of_md, right, right);
     INFO(info.name);
-    check_rate(made.rates().channel, info.names_channels ? 1 : 0, info.names_channels ? 2 : 0);
+    check_rate(made.rates()["channel"], info.names_channels ? 1 : 0, info.names_channels ? 2 : 0);
   }
 }
 
@@ -310,13 +313,13 @@ TEST_CASE("rates of a method: channel, parameter and size of a mismatch with imp
     made.add(truth(3.0), said, said);
   made.add(truth(1.0), says({1, 2}, kGain, 0.7), verdict(false));  // without impact
   const MethodRates rates = made.rates();
-  check_rate(rates.channel, 4, 5);         // of those that are flagged
-  check_rate(rates.channel_impact, 3, 5);  // what is not flagged is not named
-  check_rate(rates.parameter_impact, 2, 5);
-  check_rate(rates.size_covered, 1, 3);
-  CHECK(rates.size_error.value == Approx(0.4));  // 0.1, 0.4 and 0.6 of the deviation of 0.5
-  CHECK(rates.channels_named.value == 2.0);
-  CHECK(rates.channels_named.count == 5);
+  check_rate(rates["channel"], 4, 5);         // of those that are flagged
+  check_rate(rates["channel_impact"], 3, 5);  // what is not flagged is not named
+  check_rate(rates["parameter_impact"], 2, 5);
+  check_rate(rates["size_covered"], 1, 3);
+  CHECK(rates.estimates["size_error"].value == Approx(0.4));  // 0.1, 0.4 and 0.6 of the deviation of 0.5
+  CHECK(rates.estimates["channels_named"].value == 2.0);
+  CHECK(rates.estimates["channels_named"].count == 5);
 }
 
 TEST_CASE("rates of a method: the area under ROC is the share of pairs in the right order",
@@ -511,38 +514,55 @@ TEST_CASE(
   }
   const MethodRates rates = rate_collector(worlds, 0, calibration).of(records);
   REQUIRE(rates.thresholds.at_05.value);
-  CHECK(rates.repair_gain_share.count == 7);
-  CHECK(rates.repair_gain_share.value == Approx(2.25 / 7.0));
-  CHECK(rates.repair_gain_share.clusters.size() == 3);  // that of the exact world first
-  CHECK(rates.repair_gain_share.interval.contains(rates.repair_gain_share.value));
-  CHECK(rates.repair_gain_share_05.value == Approx(2.25 / 7.0));
+  CHECK(rates.estimates["repair_gain_share"].count == 7);
+  CHECK(rates.estimates["repair_gain_share"].value == Approx(2.25 / 7.0));
+  CHECK(rates.estimates["repair_gain_share"].clusters.size() == 3);  // that of the exact world first
+  CHECK(rates.estimates["repair_gain_share"].interval.contains(rates.estimates["repair_gain_share"].value));
+  CHECK(rates.estimates["repair_gain_share_05"].value == Approx(2.25 / 7.0));
   // Above the threshold with `mismatch`: all but the fourth, the one without a verdict, and the disturbance.
-  check_rate(rates.source_05_impact, 6, 9);
+  check_rate(rates["source_05_impact"], 6, 9);
   const std::vector<Finding> rows = rows_of(worlds, rates, form->method());
   CHECK(std::any_of(rows.begin(), rows.end(), [](const Finding& row) {
     return row.name == "compare.lasso.repair_gain_share_05" && row.value > 0.3 && row.interval.upper < 1.0;
   }));
 }
 
-TEST_CASE("the rates have one list: every rate once, and a finding of its own", "[method_rates]") {
-  std::set<std::string> names;
-  std::set<const Rate*> members;
-  const MethodRates none{};
-  for (const MethodRateInfo& info : method_rate_infos()) {
-    names.insert(info.name);
-    members.insert(&(none.*info.rate));
+TEST_CASE("no two numbers of a method have the same name or heading", "[method_rates]") {
+  std::set<std::string> names, headings;
+  for (const MethodNumber& number : method_numbers()) {
+    INFO(number.name << ", " << number.heading);
+    CHECK(names.insert(number.name).second);
+    CHECK(headings.insert(number.heading).second);
+    CHECK(heading_of(number.name) == number.heading);
+    CHECK_FALSE(std::string(number.meaning).empty());
   }
-  CHECK(names.size() == method_rate_infos().size());
-  CHECK(members.size() == method_rate_infos().size());
+  CHECK(headings.size() >= rate_rows().size() + estimate_rows().size());
+  CHECK_THROWS_AS(heading_of("no_such_number"), std::out_of_range);
+}
 
+TEST_CASE("a further rate is a row", "[method_rates]") {
+  constexpr RateRow kHealthySaid[] = {
+      {{"healthy_said", "Healthy, as said", "share of the healthy loops"},
+       [](const JudgedLoop& l) { return !l.truth.faulty(); },
+       [](const JudgedLoop& l) { return l.said.answered && !l.said.flagged; }}};
+  RateCounts counts(kHealthySaid);
+  const OutcomeScope scope;
+  for (const bool flagged : {true, false, false})
+    counts.add({scope, FaultTruth{}, LoopOutcome{.answered = true, .flagged = flagged}}, 0);
+  counts.add({scope, FaultTruth{.kind = kMpm}, LoopOutcome{.answered = true}}, 0);
+  check_rate(counts.rates(0.95)["healthy_said"], 2, 3);
+}
+
+TEST_CASE("the rates have one list: every rate once, and a finding of its own", "[method_rates]") {
   Case made;
   made.add(kMpm, verdict(true, 2.0));
   made.add(kMpm, verdict(false, 1.0));
   made.add(kNone, verdict(false, 0.0));
   const MethodRates rates = made.rates();
   const std::vector<Finding> rows = rows_of(study(), rates, testing::chain_form()->method());
-  const std::size_t estimates = method_estimate_infos(study()).size();
-  REQUIRE(rows.size() == method_rate_infos(study()).size() + 2 + estimates);
+  const auto count = [](auto some) { return static_cast<std::size_t>(std::ranges::distance(some)); };
+  const std::size_t estimates = count(rows_for(study(), estimate_rows()));
+  REQUIRE(rows.size() == count(rows_for(study(), rate_rows())) + area_rows().size() + estimates);
   CHECK(rows[0].name == "compare.botelho.answered");
   CHECK(rows[1].name == "compare.botelho.detected");
   CHECK(rows[1].value == 0.5);
@@ -550,7 +570,7 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   CHECK(rows[1].hits == 1);
   CHECK(rows[1].is_share());
   CHECK(rows[1].method == "botelho");
-  CHECK(rows[1].interval.lower == rates.detected.interval.lower);
+  CHECK(rows[1].interval.lower == rates["detected"].interval.lower);
   const Finding& area = rows[rows.size() - estimates - 2];
   CHECK(area.name == "compare.botelho.roc_area");
   CHECK_FALSE(area.is_share());
@@ -567,8 +587,7 @@ TEST_CASE("the rates have one list: every rate once, and a finding of its own", 
   calibrated.monitoring.emplace();
   calibrated.record.candidates = 1;
   calibrated.world.emplace();
-  CHECK(rows_of(calibrated, rates, testing::chain_form()->method()).size() ==
-        method_rate_infos().size() + 2 + method_estimate_infos().size() + threshold_infos().size());
+  CHECK(rows_of(calibrated, rates, testing::chain_form()->method()).size() == method_numbers().size() - 1);
 }
 
 }  // namespace mpm

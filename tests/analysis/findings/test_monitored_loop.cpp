@@ -76,13 +76,13 @@ TEST_CASE("monitored loops: median of the delays, and alarms over the time that 
       said(kFaulty, 200, {0, 0, 0, 0, 1, 1, 1}), said(kFaulty, 200, {0, 0, 1, 1, 1, 1, 1}),
       said(kFaulty, 200, {0, 0, 0, 0, 0, 0, 0}), said(kHealthy, 0, {0, 0, 0, 1, 0, 0, 0})};
   const MethodRates rates = rate_collector(monitored(), 0).of(records);
-  CHECK(rates.detection_delay.value == 400.0);  // of 400, 200 and never
-  CHECK(rates.detection_delay.count == 3);
-  CHECK(rates.monitored_impact.hits == 2);
-  CHECK(rates.monitored_impact.total == 3);
+  CHECK(rates.estimates["detection_delay"].value == 400.0);  // of 400, 200 and never
+  CHECK(rates.estimates["detection_delay"].count == 3);
+  CHECK(rates["monitored_impact"].hits == 2);
+  CHECK(rates["monitored_impact"].total == 3);
   // 16 windows watch 50 samples of 4 min each, in which two alarms begin.
-  CHECK(rates.false_alarms_a_day.value == Approx(2.0 / (16 * 50 * 4.0 / 1440.0)));
-  CHECK(rates.false_alarms_a_day.count == 16);
+  CHECK(rates.estimates["false_alarms_a_day"].value == Approx(2.0 / (16 * 50 * 4.0 / 1440.0)));
+  CHECK(rates.estimates["false_alarms_a_day"].count == 16);
 }
 
 TEST_CASE("days in a time unit, and none of one that is not known") {

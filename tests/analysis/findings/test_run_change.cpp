@@ -52,7 +52,7 @@ const VerdictChange& verdict_of(const MethodChange& change, const std::string& q
 
 const RateChange& rate_of(const MethodChange& change, const std::string& name) {
   for (const RateChange& rate : change.rates)
-    if (rate.info->name == name)
+    if (rate.row->name == name)
       return rate;
   throw std::runtime_error("no rate " + name);
 }
@@ -81,11 +81,11 @@ TEST_CASE(
   const MethodRates was = rate_collector(before.study, 0).of(before.records);
   const MethodRates is = rate_collector(now.study, 0).of(now.records);
   for (const RateChange& rate : change.rates) {
-    INFO(rate.info->name);
-    CHECK(rate.before.hits == (was.*rate.info->rate).hits);
-    CHECK(rate.before.total == (was.*rate.info->rate).total);
-    CHECK(rate.now.hits == (is.*rate.info->rate).hits);
-    CHECK(rate.now.total == (is.*rate.info->rate).total);
+    INFO(rate.row->name);
+    CHECK(rate.before.hits == was.rates.of(*rate.row).hits);
+    CHECK(rate.before.total == was.rates.of(*rate.row).total);
+    CHECK(rate.now.hits == is.rates.of(*rate.row).hits);
+    CHECK(rate.now.total == is.rates.of(*rate.row).total);
   }
   const RateChange& located = rate_of(change, "located");
   CHECK(located.counts.total() == 19);  // the loop that is not flagged is not counted in B

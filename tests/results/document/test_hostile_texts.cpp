@@ -137,14 +137,15 @@ Campaign hostile_campaign(char first) {
 Leaderboard hostile_board(char first) {
   const std::string text = hostile(first);
   constexpr OutcomeScope kScope{.locates_cvs = true, .tells_sources = true, .at_05 = true};
-  const char faulty = letter_of(FaultTruth{ExperimentKind::mpm, true, true}),
-             found = letter_of(LoopOutcome{.answered = true, .flagged = true, .above_05 = true}),
-             silent = letter_of(LoopOutcome{});
-  CellScores cell{.time_unit = text, .monitored = true, .experiments = 4, .truths = std::string(4, faulty)};
+  CellScores cell{.time_unit = text,
+                  .monitored = true,
+                  .experiments = 4,
+                  .truths = LoopTruths(4, FaultTruth{ExperimentKind::mpm, true, true})};
   cell.worlds = {0, 0, 1, 1};
   cell.in_worlds = true;
-  for (const char said : {found, silent}) {
-    cell.methods.push_back(scores_of_outcomes(cell, std::string(4, said), kScope));
+  for (const LoopOutcome& said :
+       {LoopOutcome{.answered = true, .flagged = true, .above_05 = true}, LoopOutcome{}}) {
+    cell.methods.push_back(scores_of_outcomes(cell, LoopOutcomes(4, said), kScope));
     cell.methods.back().reason = text;
   }
   Suite suite;

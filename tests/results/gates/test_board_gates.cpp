@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -29,24 +30,21 @@ Suite suite_of_one_cell() {
 }
 
 /// A method that finds the first `hits` faults, and says of the healthy loops that all is well.
-std::string first_found(int hits) {
-  const char found = letter_of(LoopOutcome{.answered = true,
-                                           .flagged = true,
-                                           .above_05 = true,
-                                           .right_cv = true,
-                                           .right_source = true}),
-             silent = letter_of(LoopOutcome{.answered = true});
-  return std::string(static_cast<std::size_t>(hits), found) +
-         std::string(static_cast<std::size_t>(kFaulty + kHealthy - hits), silent);
+LoopOutcomes first_found(int hits) {
+  LoopOutcomes outcomes(kFaulty + kHealthy, LoopOutcome{.answered = true});
+  std::fill_n(
+      outcomes.begin(), hits,
+      LoopOutcome{
+          .answered = true, .flagged = true, .above_05 = true, .right_cv = true, .right_source = true});
+  return outcomes;
 }
 
-FinishedBoard board_of(const std::vector<std::string>& methods, const std::vector<std::string>& outcomes) {
-  const FaultTruth faulty{ExperimentKind::mpm, true, true}, healthy{};
-  CellScores cell{
-      .experiments = kFaulty + kHealthy,
-      .truths = std::string(kFaulty, letter_of(faulty)) + std::string(kHealthy, letter_of(healthy)),
-      .worlds = std::vector<int>(kFaulty + kHealthy, 0)};
-  for (const std::string& of_method : outcomes)
+FinishedBoard board_of(const std::vector<std::string>& methods, const std::vector<LoopOutcomes>& outcomes) {
+  CellScores cell{.experiments = kFaulty + kHealthy,
+                  .truths = LoopTruths(kFaulty, FaultTruth{ExperimentKind::mpm, true, true}),
+                  .worlds = std::vector<int>(kFaulty + kHealthy, 0)};
+  cell.truths.resize(kFaulty + kHealthy, FaultTruth{});
+  for (const LoopOutcomes& of_method : outcomes)
     cell.methods.push_back(scores_of_outcomes(cell, of_method, kScope));
   return {"1.0", "abc", methods, {cell}};
 }
@@ -116,8 +114,8 @@ TEST_CASE("board gates: what failed or was not run stops every suite", "[gates]"
 }
 
 TEST_CASE("board gates: a method that this program does not have has to answer", "[gates]") {
-  std::string outcomes = first_found(24);
-  outcomes.replace(0, 10, std::string(10, letter_of(LoopOutcome{})));
+  LoopOutcomes outcomes = first_found(24);
+  std::fill_n(outcomes.begin(), 10, LoopOutcome{});
   BoardRun run{suite_of_one_cell(), board_of({"mine", "sse"}, {outcomes, outcomes})};
   const std::string easy = "[[gate]]\naggregate = \"compare.mine.answered\"\nminimum = 0.1\n";
   CHECK(judged(run, easy).passed());  // it does not apply to these loops

@@ -221,8 +221,8 @@ TEST_CASE("report: several methods stand side by side, with curves where it can"
   CHECK(figures == std::vector<std::string>{"comparison-rates", "comparison-roc", "comparison-roc-impact"});
   const std::string html = html_of(section);
   CHECK_THAT(html, Contains("the same 3 of 5 experiments") && Contains("it needs &lt;more&gt;"));
-  for (const MethodRateInfo& info : method_rate_infos(campaign.study))
-    CHECK_THAT(html, Contains(std::string("<strong>") + info.title + "</strong>: "));
+  for (const RateRow& row : rows_for(campaign.study, rate_rows()))
+    CHECK_THAT(html, Contains(std::string("<strong>") + row.heading + "</strong>: "));
   for (const std::string& method : method_names(campaign))
     CHECK_THAT(html, Contains(method));
 
@@ -265,18 +265,18 @@ TEST_CASE("report: the verdict on top is of the CV where no method names a sourc
   };
   // Right in all that it flags, of which there is one loop: that is no winner.
   flag(1);
-  REQUIRE(findings_of(campaign).methods.front().rates.located.total == 1);
-  REQUIRE(findings_of(campaign).methods.front().rates.answered.total > 2);
+  REQUIRE(findings_of(campaign).methods.front().rates["located"].total == 1);
+  REQUIRE(findings_of(campaign).methods.front().rates["answered"].total > 2);
   CHECK_THAT(page_of(campaign, "f.h5"), Contains("no method both answers nearly always and detects") &&
                                             !Contains("<code>sse</code> flags"));
   flag(campaign.records.size());
   const StudyFindings findings = findings_of(campaign);
   const MethodRates& rates = findings.methods.front().rates;
-  REQUIRE(rates.source.total == 0);
-  REQUIRE(rates.located.total > 0);
+  REQUIRE(rates["source"].total == 0);
+  REQUIRE(rates["located"].total > 0);
   CHECK_THAT(page_of(campaign, "f.h5"),
-             Contains("no method names a source; <code>sse</code> flags " + share_words(rates.detected)) &&
-                 Contains("in " + share_words(rates.located) + " of the loops it flags."));
+             Contains("no method names a source; <code>sse</code> flags " + share_words(rates["detected"])) &&
+                 Contains("in " + share_words(rates["located"]) + " of the loops it flags."));
 }
 
 TEST_CASE("an estimate in words: bounds say so, what is shorter is not longer by less, and rounding is 0") {

@@ -52,11 +52,11 @@ TEST_CASE(
   const Campaign campaign = four_methods();
   const StudyFindings findings = findings_of(campaign);
   const std::string text = document_text(comparison_document(campaign, findings));
-  const Rate& detected = findings.methods[0].rates.detected;
+  const Rate& detected = findings.methods[0].rates["detected"];
   CHECK(detected.hits < detected.total);
   CHECK_THAT(text, Contains(std::to_string(experiments_that_ran(campaign)) + " of 40 experiments compared"));
-  for (const MethodRateInfo& info : counted_rates(findings.methods))
-    CHECK_THAT(text, Contains(std::string("\n") + info.title));
+  for (const RateRow* const row : counted_rates(findings.methods))
+    CHECK_THAT(text, Contains(std::string("\n") + row->heading));
   CHECK_THAT(text, !Contains("calibrated"));
   char share[16];
   std::snprintf(share, sizeof share, "%.1f [%.1f, ", 100.0 * detected.value, 100.0 * detected.interval.lower);
@@ -75,7 +75,7 @@ TEST_CASE("comparison text: without the rest, a screen with one row a method tha
   const StudyFindings findings = findings_of(campaign);
   const std::string text = document_text(comparison_document(campaign, findings), kTerminalWidth, false);
   CHECK(std::count(text.begin(), text.end(), '\n') <= 20);
-  const Rate& located = findings.methods[0].rates.located;
+  const Rate& located = findings.methods[0].rates["located"];
   REQUIRE(located.total > 0);
   CHECK_THAT(text, Contains(fmt::format("{:.0f} [{:.0f}, {:.0f}]", 100 * located.value,
                                         100 * located.interval.lower, 100 * located.interval.upper)));
@@ -89,7 +89,7 @@ TEST_CASE("comparison text: one method has no pairs, and what was not counted is
   Campaign campaign = four_methods();
   remove_methods(campaign, [](const std::string& name) { return name != "botelho"; });
   const std::string text = document_text(comparison_document(campaign, findings_of(campaign)));
-  CHECK_THAT(text, !Contains("McNemar") && !Contains("because") && !Contains("false alarms, bad tuning"));
+  CHECK_THAT(text, !Contains("McNemar") && !Contains("because") && !Contains("Bad tuning flagged"));
 }
 
 TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the findings") {
@@ -104,10 +104,10 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
     const Json& of_json = json["methods"][m];
     CHECK(of_json["name"] == findings.methods[m].name());
     CHECK(of_json["reason"] == rates.reason);
-    CHECK(of_json["rates"].size() == method_rate_infos(campaign.study).size());
-    for (const MethodRateInfo& info : method_rate_infos(campaign.study)) {
-      const Rate& rate = rates.*info.rate;
-      const Json& share = of_json["rates"][info.name];
+    CHECK(std::ssize(of_json["rates"]) == std::ranges::distance(rows_for(campaign.study, rate_rows())));
+    for (const RateRow& row : rows_for(campaign.study, rate_rows())) {
+      const Rate& rate = rates.rates.of(row);
+      const Json& share = of_json["rates"][row.name];
       CHECK(share["hits"] == rate.hits);
       CHECK(share["total"] == rate.total);
       if (rate.total > 0)
@@ -116,7 +116,7 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
         CHECK(share["value"].is_null());
       CHECK(share["lower"] == rate.interval.lower);
       CHECK(share["upper"] == rate.interval.upper);
-      CHECK(json["rates"][info.name] == info.meaning);
+      CHECK(json["rates"][row.name] == row.meaning);
     }
     CHECK(of_json["roc"]["threshold"].size() == rates.roc.size);
   }
@@ -145,8 +145,8 @@ TEST_CASE("comparison of a study with a calibration: its rates, thresholds, and 
                           std::vector(30, CalibrationLoop{ExperimentKind::healthy, {0.25, 0.5, kNaN, 0.5}})};
   const StudyFindings findings = findings_of(campaign);
   const std::string text = document_text(comparison_document(campaign, findings));
-  for (const MethodRateInfo& info : counted_rates(findings.methods))
-    CHECK_THAT(text, Contains(std::string("\n") + info.title));
+  for (const RateRow* const row : counted_rates(findings.methods))
+    CHECK_THAT(text, Contains(std::string("\n") + row->heading));
   CHECK_THAT(text, Contains("Thresholds from 30 healthy loops and 100 with a disturbance, seed 77"));
   CHECK_THAT(text, Contains("no threshold_01 for botelho: 30 calibration loops with a verdict are too few"));
   CHECK_THAT(text, Contains("badwe2009: no verdict on any calibration loop, so no rate at"));

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <ranges>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/findings/loop_outcome.hpp"
+#include "analysis/findings/world_counts.hpp"
+#include "analysis/statistics/interval.hpp"
+#include "scenarios/study/study.hpp"
+
+// The numbers by which methods are compared, each a row: text, JSON, archive, report, board, gates and the
+// Python package iterate over the rows, and have their names and headings from them.
+
+namespace mpm {
+
+/// Which studies have a number.
+enum class StudyFeature : std::int8_t {
+  any,
+  candidates,
+  calibration,
+  monitoring,
+  worlds,
+  calibrated_worlds,
+};
+
+bool has_feature(const Study& study, StudyFeature feature);
+
+/// A number of a method. No two have the same name or heading (method_numbers()).
+struct MethodNumber {
+  const char* name;     ///< "false_alarm_healthy"
+  const char* heading;  ///< of tables and figures: "Healthy flagged"
+  const char* meaning;  ///< which loops are looked at, and what of them is counted
+  bool low_is_good = false;
+  StudyFeature of = StudyFeature::any;
+};
+
+/// A rate: a share of loops.
+struct RateRow : MethodNumber {
+  bool (*counts)(const JudgedLoop&);  ///< is the loop one of those that it is a share of?
+  bool (*hit)(const JudgedLoop&);     ///< is it one of the share? Asked only of loops that count
+
+  /// None: the loop does not count.
+  std::optional<bool> ask(const JudgedLoop& loop) const {
+    return counts(loop) ? std::optional(hit(loop)) : std::nullopt;
+  }
+};
+
+/// Every rate once, in the order in which people read them.
+std::span<const RateRow> rate_rows();
+
+/// The row of this name; throws std::out_of_range when there is none.
+template <class Row>
+const Row& row_of(std::span<const Row> rows, std::string_view name) {
+  const auto found =
+      std::find_if(rows.begin(), rows.end(), [name](const Row& row) { return row.name == name; });
+  if (found == rows.end())
+    throw std::out_of_range("no number of methods is called " + std::string(name));
+  return *found;
+}
+
+/// Those that this study can have.
+template <class Row>
+auto rows_for(const Study& study, std::span<const Row> rows) {
+  return rows | std::views::filter([&study](const Row& row) { return has_feature(study, row.of); });
+}
+
+/// A value for each of these rows, which must outlive it.
+template <class Row, class Value>
+class RowValues {
+ public:
+  explicit RowValues(std::span<const Row> rows) : rows_(rows), values_(rows.size()) {}
+
+  std::span<const Row> rows() const { return rows_; }
+  Value& of(const Row& row) { return values_[static_cast<std::size_t>(&row - rows_.data())]; }
+  const Value& of(const Row& row) const { return values_[static_cast<std::size_t>(&row - rows_.data())]; }
+  /// The value of this name; throws std::out_of_range when no row has it.
+  Value& operator[](std::string_view name) { return of(row_of(rows_, name)); }
+  const Value& operator[](std::string_view name) const { return of(row_of(rows_, name)); }
+
+ private:
+  std::span<const Row> rows_;
+  std::vector<Value> values_;
+};
+
+struct Rates : RowValues<RateRow, Rate> {
+  explicit Rates(std::span<const RateRow> rows = rate_rows()) : RowValues(rows) {}
+};
+
+/// Counts the loops of each rate, by world.
+class RateCounts {
+ public:
+  explicit RateCounts(std::span<const RateRow> rows = rate_rows()) : counts_(rows) {}
+
+  void add(const JudgedLoop& loop, int world);
+  Rates rates(double confidence) const;
+
+ private:
+  RowValues<RateRow, WorldCount> counts_;
+};
+
+}  // namespace mpm
