@@ -212,7 +212,7 @@ class DominanceCounts {
     const double confidence = study_.aggregate.confidence;
     for (std::size_t b = 0; b < i_mpm_.size(); ++b) {
       const auto above = std::count_if(i_mpm_[b].begin(), i_mpm_[b].end(),
-                                       [&](double i_mpm) { return i_mpm > study_.diagnosis.mpm_threshold; });
+                                       [&](double i_mpm) { return i_mpm > mpm_threshold(study_); });
       bins.push_back({kDominanceEdges[b], kDominanceEdges[b + 1], summarise(i_mpm_[b], confidence),
                       rate(above, std::ssize(i_mpm_[b]), confidence)});
     }
@@ -257,7 +257,7 @@ class SourceScores {
     RandomStream stream(study_.seed, std::numeric_limits<std::uint64_t>::max(), StreamId::bootstrap);
     source.best_threshold =
         best_threshold_interval(mpm_, ud_, stream, {options.bootstrap_replications, options.confidence});
-    source.at_study = roc_point(mpm_, ud_, study_.diagnosis.mpm_threshold);
+    source.at_study = roc_point(mpm_, ud_, mpm_threshold(study_));
     return source;
   }
 

@@ -73,6 +73,7 @@ DiagnosisChain::DiagnosisChain(const Study& study) : DiagnosisChain(study, 0, st
 
 DiagnosisChain::DiagnosisChain(const Study& study, Eigen::Index first, Eigen::Index samples)
     : options_(study.diagnosis),
+      mpm_threshold_(mpm_threshold(study)),
       every_cv_(study.names_scenarios()),
       y_set_(variance_centres(study, first, samples)),
       windows_(window_scan(study)),
@@ -136,7 +137,7 @@ MpmIndicator DiagnosisChain::indicator_of(Eigen::Index cv, const Eigen::Ref<cons
 FaultSource DiagnosisChain::source_of(const MpmIndicator& indicator) const {
   if (std::isnan(indicator.i_mpm))
     return FaultSource::none;
-  return indicator.i_mpm > options_.mpm_threshold ? FaultSource::mpm : FaultSource::ud;
+  return indicator.i_mpm > mpm_threshold_ ? FaultSource::mpm : FaultSource::ud;
 }
 
 }  // namespace mpm

@@ -14,6 +14,18 @@
 
 namespace mpm {
 
+/// What only the chain asks of [diagnosis] in a study.
+struct ChainOptions {
+  double mpm_threshold = 0.1;  ///< I_MPM above it: model-plant mismatch
+
+  bool operator==(const ChainOptions&) const = default;
+};
+
+/// That of a study.
+inline double mpm_threshold(const Study& study) {
+  return study.assessment.of<ChainOptions>().mpm_threshold;
+}
+
 /// What the chain says of one CV of a named scenario, in which several CVs may be affected.
 struct CvDiagnosis {
   bool flagged = false;                    ///< Ivar_diag lies outside the band of impact
@@ -105,6 +117,7 @@ class DiagnosisChain {
                         const NominalOutputs& nominal) const;
 
   DiagnosisOptions options_;
+  double mpm_threshold_;
   bool every_cv_;
   SetpointTrajectories y_set_;  ///< what the variances are taken about; empty: the means of all CVs
   WindowScan windows_;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/indicators/diagnosis.hpp"
 #include "analysis/study_files/study_file_parts.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -142,7 +143,7 @@ OptionKeys s0_perturbation_keys(Study& study) {
           key::check(check_structure)};
 }
 
-OptionKeys diagnosis_keys(DiagnosisOptions& options) {
+OptionKeys diagnosis_keys(DiagnosisOptions& options, ChainOptions& chain) {
   const NumberRule positive = NumberRule::positive();
   return {
       key::band("impact_band", options.impact_lower, options.impact_upper, positive,
@@ -153,7 +154,7 @@ OptionKeys diagnosis_keys(DiagnosisOptions& options) {
       key::choice(
           "location_distance", options.location_distance, {"linear", "logarithmic"},
           "distance from 1 of Ivar_diag (6.8), by which the CV is located. Open; the second treats 1/2 as 2"),
-      key::number("mpm_threshold", options.mpm_threshold, NumberRule::inside(0, 1),
+      key::number("mpm_threshold", chain.mpm_threshold, NumberRule::inside(0, 1),
                   "I_MPM (6.15) above it means a mismatch (figure 6.21)", "1"),
       key::band("windows", options.shortest_window, options.longest_window,
                 {.low = 0, .high = kMaxWindow, .high_included = true},
@@ -233,7 +234,7 @@ OptionKeys analysis_keys(Study& study) {
               "what an error in the nominal sensitivity costs")
               .otherwise("none: S0 is not perturbed"),
           key::table(
-              "diagnosis", [&study] { return diagnosis_keys(study.diagnosis); },
+              "diagnosis", [&study] { return diagnosis_keys(study.diagnosis, study.assessment.of<ChainOptions>()); },
               "the open choices of the diagnosis")};
 }
 

@@ -179,7 +179,7 @@ std::string indicator_answer(const ReportInput& input) {
   const std::string kinds = by_kind(input, &KindFindings::source_recognised);
   return kinds.empty() ? ""
                        : fmt::format("With the threshold {:g} the source is named rightly in: {}.",
-                                     input.campaign.study.diagnosis.mpm_threshold, kinds);
+                                     mpm_threshold(input.campaign.study), kinds);
 }
 
 std::string dominance_answer(const ReportInput& input) {

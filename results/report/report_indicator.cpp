@@ -31,7 +31,7 @@ std::string population(const Study& study) {
 }
 
 double highest_indicator(const Campaign& campaign) {
-  double highest = campaign.study.diagnosis.mpm_threshold;
+  double highest = mpm_threshold(campaign.study);
   records_of(campaign).each([&](const ExperimentRecord& record) {
     if (const double i_mpm = judged_indicator(campaign.study, record); std::isfinite(i_mpm))
       highest = std::fmax(highest, i_mpm);
@@ -60,7 +60,7 @@ Panel kind_panel(const ReportInput& input, const KindFindings& kind) {
   PanelScript panel(fmt::format("impm_{}", to_string(kind.kind)),
                     fmt::format("{}: {} of {} recognised", kind_name(kind.kind), rate.hits, rate.total),
                     {.label = "experiment"}, indicator_axis(campaign));
-  panel.across(study.diagnosis.mpm_threshold, kThreshold);
+  panel.across(mpm_threshold(study), kThreshold);
   panel.points(right, kRight);
   panel.points(wrong, kWrong);
   return panel.finish(
@@ -88,7 +88,7 @@ Panel dominance_panel(const ReportInput& input, const std::vector<DominanceBin>&
                                  bin.upper, bin.i_mpm.mean, bin.i_mpm.count)});
   PanelScript panel("dominance", "", {.label = "dominance_{MPM} (-)", .lower = 0.0, .upper = 1.0},
                     indicator_axis(campaign));
-  panel.across(study.diagnosis.mpm_threshold, kThreshold);
+  panel.across(mpm_threshold(study), kThreshold);
   panel.points(points, kBoth);
   panel.upright_whiskers(means, kMean);
   return panel.finish(
@@ -106,7 +106,7 @@ Section indicator_section(const ReportInput& input) {
   figure.caption = fmt::format(
       "I_{{MPM}} of the located CV, experiments {}; thesis figure 6.21. Above the threshold {:g} the verdict "
       "is MPM, below it UD.",
-      population(study), study.diagnosis.mpm_threshold);
+      population(study), mpm_threshold(study));
   figure.legend = {{"source right", kRight}, {"source wrong", kWrong}, {"threshold", kThreshold}};
   for (const KindFindings& kind : input.kinds())
     if (kind.kind != ExperimentKind::mpm_ud && kind.source_recognised.total > 0)

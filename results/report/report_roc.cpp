@@ -100,7 +100,7 @@ Section roc_section(const ReportInput& input) {
       "I_{MPM} as a classifier, MPM against UD, over the loops with a single fault whose source is judged. "
       "The threshold with the largest J was chosen on these data, so its rates are optimistic.";
   figure.legend = {{"any threshold", kCurve},
-                   {fmt::format("threshold of the study, {:g}", study.diagnosis.mpm_threshold), kStudy},
+                   {fmt::format("threshold of the study, {:g}", mpm_threshold(study)), kStudy},
                    {fmt::format("largest J, {:.3f}", roc.curve.best.threshold), kBest},
                    {"chance", kChance}};
   figure.panels = panels(roc);

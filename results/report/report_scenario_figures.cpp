@@ -138,7 +138,7 @@ struct IndicatorRows {
 Panel indicator_panel(const Study& study, const IndicatorRows& rows) {
   PanelScript panel("co", "source of the affected and flagged CVs",
                     {.label = "correlation (-)", .lower = 0.0}, rows_axis(rows.words));
-  panel.upright(study.diagnosis.mpm_threshold, kThreshold);
+  panel.upright(mpm_threshold(study), kThreshold);
   panel.points(rows.skewness, kSkewness);
   panel.points(rows.kurtosis, kKurtosis);
   return panel.finish("co_dkts and co_dskn of the affected and the flagged CVs of each scenario.",
@@ -166,7 +166,7 @@ Figure indicator_figure(const Campaign& campaign, const IndicatorRows& rows) {
       "Left: total simulation error (6.21); thesis figure 6.11. Right: co_{{dkts}} and co_{{dskn}} of the "
       "affected and of the flagged CVs, with what is wrong in brackets; thesis figure 6.15. The verdict is "
       "MPM when the larger exceeds {:g}.",
-      campaign.study.diagnosis.mpm_threshold);
+      mpm_threshold(campaign.study));
   figure.legend = {
       {"TSSE", kError}, {"co_{dkts}", kKurtosis}, {"co_{dskn}", kSkewness}, {"threshold", kThreshold}};
   figure.panels = {error_panel(campaign)};

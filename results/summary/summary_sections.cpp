@@ -230,7 +230,7 @@ Table dominance_table(const Study& study, const std::vector<DominanceBin>& bins)
               {{"dominance", Table::Align::left},
                {"mean"},
                {"count"},
-               {fmt::format("above {:g}", study.diagnosis.mpm_threshold)}});
+               {fmt::format("above {:g}", mpm_threshold(study))}});
   for (const DominanceBin& bin : bins)
     table.row({fmt::format("{:g} to {:g}", bin.lower, bin.upper),
                fixed(bin.i_mpm.mean, bin.i_mpm.mean_interval), bin.i_mpm.count, number(bin.above_threshold)});
@@ -291,7 +291,7 @@ Table scenario_table(const Campaign& campaign, const std::string& file) {
       fmt::format(
           "Named scenarios, and the verdict on each CV against what the study says. Flagged: Ivar_{{diag}} "
           "outside {:g} to {:g}; source by I_{{MPM}} above or below {:g}.",
-          options.impact_lower, options.impact_upper, options.mpm_threshold),
+          options.impact_lower, options.impact_upper, mpm_threshold(study)),
       {{"scenario", Table::Align::left},
        {"What is wrong, and how to replay it", Table::Align::text, Shown::page},
        {"affected", Table::Align::left},

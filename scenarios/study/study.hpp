@@ -130,7 +130,6 @@ struct DiagnosisOptions {
   double impact_upper = 1.2;
   VarianceCentre variance_centre = VarianceCentre::setpoint;  ///< (3.24), (4.14); mean: (2.20)
   LocationDistance location_distance = LocationDistance::linear;
-  double mpm_threshold = 0.1;    ///< I_MPM above it: model-plant mismatch
   double shortest_window = 0.5;  ///< of the moving windows, in prediction horizons
   double longest_window = 2.0;
   int window_stride = 1;  ///< samples between window lengths

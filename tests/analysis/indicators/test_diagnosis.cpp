@@ -20,7 +20,7 @@ TEST_CASE("location margin: one index has nothing beside it") {
 
 TEST_CASE("source: by the threshold of I_MPM, and none where there is no I_MPM") {
   Study study = find_study("chapter6");
-  study.diagnosis.mpm_threshold = 0.25;
+  study.assessment.of<ChainOptions>().mpm_threshold = 0.25;
   const DiagnosisChain chain(study);
   CHECK(chain.source_of({.i_mpm = 0.26}) == FaultSource::mpm);
   CHECK(chain.source_of({.i_mpm = 0.25}) == FaultSource::ud);

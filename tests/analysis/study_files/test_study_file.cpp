@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include "analysis/indicators/diagnosis.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
@@ -85,7 +86,7 @@ TEST_CASE("keys that are left out have the defaults of Study", "[study_file]") {
   CHECK(study.diagnosis.impact_lower == defaults.diagnosis.impact_lower);
   CHECK(study.diagnosis.impact_upper == defaults.diagnosis.impact_upper);
   CHECK(study.diagnosis.location_distance == defaults.diagnosis.location_distance);
-  CHECK(study.diagnosis.mpm_threshold == defaults.diagnosis.mpm_threshold);
+  CHECK(mpm_threshold(study) == mpm_threshold(defaults));
   CHECK(study.diagnosis.shortest_window == defaults.diagnosis.shortest_window);
   CHECK(study.diagnosis.longest_window == defaults.diagnosis.longest_window);
   CHECK(study.diagnosis.window_stride == defaults.diagnosis.window_stride);
@@ -183,7 +184,7 @@ TEST_CASE("the options of the analysis land in their place", "[study_file]") {
   CHECK(study.diagnosis.impact_lower == 0.7);
   CHECK(study.diagnosis.impact_upper == 1.4);
   CHECK(study.diagnosis.location_distance == LocationDistance::logarithmic);
-  CHECK(study.diagnosis.mpm_threshold == 0.2);
+  CHECK(mpm_threshold(study) == 0.2);
   CHECK(study.diagnosis.shortest_window == 0.4);
   CHECK(study.diagnosis.longest_window == 1.5);
   CHECK(study.diagnosis.window_stride == 3);

@@ -74,7 +74,7 @@ TEST_CASE("a variant is the base study with some keys laid over", "[sweep_file]"
 
 TEST_CASE("a table that the base study does not have is added", "[sweep_file]") {
   const SweepFolder folder(kVariant + "set.diagnosis.mpm_threshold = 0.2\n");
-  CHECK(load_sweep(folder.file()).variants[1].study.diagnosis.mpm_threshold == 0.2);
+  CHECK(load_sweep(folder.file()).variants[1].mpm_threshold(study) == 0.2);
 }
 
 TEST_CASE("what is no sweep is refused by its key", "[sweep_file]") {
