@@ -6,7 +6,8 @@ namespace mpm {
 /// it does not count the others' turns. What programs have worked for this thread counts as its own.
 double thread_seconds();
 
-/// Adds processor time that another process has spent for this thread while it waited.
+/// Adds processor time that others have spent for this thread: a process for which it waited, or whoever made
+/// before what this thread uses (DerivedValues).
 void count_for_thread(double seconds);
 
 }  // namespace mpm

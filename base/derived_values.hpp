@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <typeindex>
+#include <typeinfo>
+
+namespace mpm {
+
+/// Whose processor time (thread_seconds()) a derived value costs: that of the first who asks for it, or of
+/// each who asks for it, as if each made it.
+enum class PaidBy : std::int8_t { first, each };
+
+/// Values that are derived from one thing: a record, a benchmark, a world. Each is made when it is first
+/// asked for, and is kept for all who ask again. Its type and its key name it among the values of this thing.
+///
+/// Nothing is kept before keep(), and nothing in a copy, which may be changed: there each asker makes its
+/// own. The owner must not change what the values are derived from after keep(). Threads may ask at once: one
+/// of them makes the value, and the others wait for it.
+class DerivedValues {
+ public:
+  DerivedValues();
+  DerivedValues(const DerivedValues& other);
+  DerivedValues& operator=(const DerivedValues& other);
+  DerivedValues(DerivedValues&&) noexcept;
+  DerivedValues& operator=(DerivedValues&&) noexcept;
+  ~DerivedValues();
+
+  /// Keeps from now on what is made, and nothing that was made before.
+  void keep(PaidBy paid);
+
+  /// The value of this key, to which `make` returns a std::shared_ptr. It must not ask for this value
+  /// itself. An exception of `make` goes to whoever asks, and the next one to ask tries again.
+  template <class Value, class Make>
+  std::shared_ptr<Value> of(const std::string& key, const Make& make) const {
+    return std::static_pointer_cast<Value>(found(typeid(Value), key, [&make]() -> std::shared_ptr<void> {
+      return std::const_pointer_cast<std::remove_const_t<Value>>(std::shared_ptr<Value>(make()));
+    }));
+  }
+
+ private:
+  struct Kept;
+
+  std::shared_ptr<void> found(std::type_index type, const std::string& key,
+                              const std::function<std::shared_ptr<void>()>& make) const;
+
+  std::unique_ptr<Kept> kept_;
+};
+
+}  // namespace mpm
