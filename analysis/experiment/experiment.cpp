@@ -203,11 +203,12 @@ void ExperimentRunner::add_truth(ExperimentRecord& record, const Trajectory& loo
     record.ivar_basis = basis_variance_indices(study_of(record.draw), loop.y, healthy_output(record, {}));
     return;
   }
-  record.cost =
-      fault_cost(study_of(record.draw), record.draw, study_.world->cost_loops, factory_, record.solver);
+  PilotCosts costs;
+  record.cost = fault_cost(study_of(record.draw), record.draw, study_.world->cost_loops, factory_,
+                           record.solver, &costs);
   record.ivar_basis = record.cost->variance_ratio;
-  record.repair =
-      repair_gains(study_of(record.draw), record.draw, study_.world->repair_loops, factory_, record.solver);
+  record.repair = repair_gains(study_of(record.draw), record.draw, study_.world->repair_loops, factory_,
+                               record.solver, costs);
 }
 
 Eigen::MatrixXd ExperimentRunner::healthy_output(ExperimentRecord& record, const StepObserver& observer) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "analysis/indicators/diagnosis.hpp"
@@ -52,7 +53,7 @@ std::int64_t pilot_noise(const Study& study, const ExperimentDraw& draw, int loo
 }
 
 FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
-                     const QpSolverFactory& factory, SolverStatistics& pilots) {
+                     const QpSolverFactory& factory, SolverStatistics& pilots, PilotCosts* costs) {
   const Eigen::Index ny = study.cv_count();
   FaultCost cost{Eigen::VectorXd::Ones(ny), Eigen::VectorXd::Zero(ny), Eigen::VectorXd::Zero(ny)};
   if (is_faultless(draw.kind))
@@ -82,6 +83,8 @@ FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
   const RatioOfMeans ratio = ratio_of_means(with.total, without.total);
   cost.loss_ratio = ratio.value;
   cost.error = ratio.error;
+  if (costs != nullptr)
+    *costs = {std::move(with.total), std::move(without.total)};
   return cost;
 }
 

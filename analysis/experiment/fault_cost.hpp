@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -30,13 +31,19 @@ struct FaultCost {
   bool has_impact(double upper) const;
 };
 
+/// The costs, LoopCost::total(), of the pilot loops of an experiment, loop by loop.
+struct PilotCosts {
+  std::vector<double> with, without;  ///< its faults
+};
+
 /// The index of the noise of pilot loop `loop` of `loops` of the experiment: none twice in a study, and the
 /// same for all numbers that are expectations over pilot loops of an experiment.
 std::int64_t pilot_noise(const Study& study, const ExperimentDraw& draw, int loops, int loop);
 
 /// The cost of the faults of `draw` from `pairs` pairs of loops with noise of their own; without a fault, and
-/// of a loop that does not run to its end, one of nothing (ratios of 1) and NaN.
+/// of a loop that does not run to its end, one of nothing (ratios of 1) and NaN. In both cases the costs of
+/// the loops, which go into `costs` if it is given, are empty.
 FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
-                     const QpSolverFactory& factory, SolverStatistics& pilots);
+                     const QpSolverFactory& factory, SolverStatistics& pilots, PilotCosts* costs = nullptr);
 
 }  // namespace mpm

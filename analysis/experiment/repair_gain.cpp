@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "analysis/experiment/fault_cost.hpp"
 #include "analysis/experiment/repaired_model.hpp"
 #include "analysis/statistics/ratio_of_means.hpp"
 #include "base/non_finite.hpp"
@@ -23,7 +22,10 @@ class RepairLoops {
   RepairLoops(const Study& study, int loops, const QpSolverFactory& factory, SolverStatistics& pilots)
       : study_(study), loops_(loops), factory_(factory), pilots_(pilots) {}
 
-  std::vector<double> costs(const TransferMatrix& model, const ExperimentDraw& draw) const {
+  std::vector<double> costs(const TransferMatrix& model, const ExperimentDraw& draw,
+                            const std::vector<double>& known = {}) const {
+    if (const auto n = static_cast<std::size_t>(loops_); known.size() >= n)
+      return {known.begin(), known.begin() + loops_};
     std::vector<double> costs;
     for (int loop = 0; loop < loops_; ++loop) {
       ExperimentDraw noisy = draw;
@@ -73,13 +75,15 @@ double RepairGains::share_of(const std::optional<Channel>& channel) const {
 }
 
 RepairGains repair_gains(const Study& study, const ExperimentDraw& draw, int loops,
-                         const QpSolverFactory& factory, SolverStatistics& pilots) {
+                         const QpSolverFactory& factory, SolverStatistics& pilots, const PilotCosts& known) {
   if (draw.mismatches.empty() || study.nonlinear || loops == 0)
     return {};
   const Study moved = with_excitation(study, draw.index);
   const RepairLoops runs(moved, loops, factory, pilots);
-  const std::vector<double> now = runs.costs(moved.plant.G, draw);
-  const std::vector<double> without = runs.costs(moved.plant.G, draw.without_faults());
+  const bool same_loops = draw.onset.from_the_start() && !draw.tuning;
+  const std::vector<double> now =
+      runs.costs(moved.plant.G, draw, same_loops ? known.with : std::vector<double>());
+  const std::vector<double> without = runs.costs(moved.plant.G, draw.without_faults(), known.without);
   if (now.empty() || without.empty())
     return {};
   const TransferMatrix plant = true_plant(moved, draw);

@@ -77,8 +77,21 @@ TEST_CASE(
   CHECK(gains.share_of(Channel{0, 0}) == 0.0);
   CHECK(gains.share_of({}) == 0.0);
   // The same noise as that of the cost of the fault.
-  const FaultCost cost = fault_cost(study, draw, kRepairLoops, testing::kFactory, pilots);
+  PilotCosts costs;
+  const FaultCost cost = fault_cost(study, draw, kRepairLoops, testing::kFactory, pilots, &costs);
   CHECK(cost.loss_ratio == Approx(now / without).epsilon(1e-12));
+  // Its loops are not run again.
+  pilots = {};
+  const RepairGains known = repair_gains(study, draw, kRepairLoops, testing::kFactory, pilots, costs);
+  CHECK(pilots.steps == kRepairLoops * study.simulation.samples);
+  CHECK(known.gain == gains.gain);
+  CHECK((known.error.array() == gains.error.array() || gains.error.array().isNaN()).all());
+  ExperimentDraw later = draw;  // the repair asks for the fault from the first sample on
+  later.onset = {.sample = 50};
+  fault_cost(study, later, kRepairLoops, testing::kFactory, pilots, &costs);
+  pilots = {};
+  CHECK(repair_gains(study, later, kRepairLoops, testing::kFactory, pilots, costs).gain == gains.gain);
+  CHECK(pilots.steps == 2 * kRepairLoops * study.simulation.samples);
 }
 
 TEST_CASE("repair gain: that of a measured disturbance is that of the feed-forward that knows it",
