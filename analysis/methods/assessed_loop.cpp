@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -220,15 +221,38 @@ AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::In
           .first = first};
 }
 
-AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, AnalysesHeld from,
-                                AssessedLoop& whole) {
-  whole = loop.from_start();
-  const std::vector<AnalyserTiming>& timings = study.controller.analysers;
-  for (std::size_t i = 0; i < timings.size(); ++i)
-    if (const auto cv = static_cast<Eigen::Index>(i); timings[i].is_analyser())
-      hold(timings[i], from == AnalysesHeld::from_shown ? timings[i].delay : 0, whole.y.row(cv),
-           whole.y_sim.row(cv));
-  return loop.whole ? window_of(whole, loop.first, loop.samples()) : whole;
+std::shared_ptr<const AssessedLoop> derived_window(const AssessedLoop& record, Eigen::Index first,
+                                                   Eigen::Index samples) {
+  return record.derived.of<const AssessedLoop>(fmt::format("window of {} from {}", samples, first), [&] {
+    auto window = std::make_shared<AssessedLoop>(window_of(record, first, samples));
+    window->derived.keep(PaidBy::each);
+    return window;
+  });
+}
+
+std::shared_ptr<AssessedLoop> same_window(const AssessedLoop& loop, AssessedLoop record) {
+  struct Kept {
+    AssessedLoop record, window;
+  };
+  auto kept = std::make_shared<Kept>(Kept{std::move(record), {}});
+  if (loop.whole)
+    kept->window = window_of(kept->record, loop.first, loop.samples());
+  for (AssessedLoop* each : {&kept->record, &kept->window})
+    each->derived.keep(PaidBy::each);
+  return {kept, loop.whole ? &kept->window : &kept->record};
+}
+
+std::shared_ptr<const AssessedLoop> with_analyses_held(const Study& study, const AssessedLoop& loop,
+                                                       AnalysesHeld from) {
+  const bool shown = from == AnalysesHeld::from_shown;
+  return loop.derived.of<const AssessedLoop>(shown ? "held from shown" : "held from taken", [&] {
+    AssessedLoop whole = loop.from_start();
+    const std::vector<AnalyserTiming>& timings = study.controller.analysers;
+    for (std::size_t i = 0; i < timings.size(); ++i)
+      if (const auto cv = static_cast<Eigen::Index>(i); timings[i].is_analyser())
+        hold(timings[i], shown ? timings[i].delay : 0, whole.y.row(cv), whole.y_sim.row(cv));
+    return same_window(loop, std::move(whole));
+  });
 }
 
 std::optional<std::string> out_of_proportion(const Study& study, const AssessedLoop& loop) {

@@ -2,11 +2,13 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "analysis/basis/basis_case.hpp"
+#include "base/derived_values.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
@@ -45,6 +47,9 @@ struct AssessedLoop {
   std::vector<Eigen::MatrixXd> untold = {};
   const AssessedLoop* whole = nullptr;  ///< the record that this is a window of; null: it is whole
   Eigen::Index first = 0;               ///< sample of it at which the window begins
+  /// What several methods make of these records under one context (nominal loops, corrections, answers of
+  /// other methods) is made once while a panel assesses the loop (MethodPanel).
+  DerivedValues derived = {};
 
   const AssessedLoop& from_start() const { return whole ? *whole : *this; }
   /// The window's columns of a signal of the record, one column for each sample.
@@ -90,11 +95,18 @@ AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::In
 /// From where on an analysis is held: the sample at which it was taken, or that at which it was shown.
 enum class AnalysesHeld { from_taken, from_shown };
 
+/// The same window as a value that is derived from the record, and whose own derived values are kept.
+std::shared_ptr<const AssessedLoop> derived_window(const AssessedLoop& record, Eigen::Index first,
+                                                   Eigen::Index samples);
+
+/// `record` where `loop` is whole, and of a window this window of it, which keeps the record alive: for a
+/// record that was made from that of `loop`, sample by sample. Derived values are kept.
+std::shared_ptr<AssessedLoop> same_window(const AssessedLoop& loop, AssessedLoop record);
+
 /// The loop with each analysis of a CV of an analyser, and y_sim at its sample, held to the next one, so that
-/// an exact model has no errors between them; NaN where an analysis is missing. `whole` is where the record
-/// of a window is kept; it must outlive the loop.
-AssessedLoop with_analyses_held(const Study& study, const AssessedLoop& loop, AnalysesHeld from,
-                                AssessedLoop& whole);
+/// an exact model has no errors between them; NaN where an analysis is missing. It is derived from `loop`.
+std::shared_ptr<const AssessedLoop> with_analyses_held(const Study& study, const AssessedLoop& loop,
+                                                       AnalysesHeld from);
 
 /// What is known of the errors of the model where nothing is wrong.
 class ModelCorrection {
@@ -104,12 +116,15 @@ class ModelCorrection {
   ModelCorrection& operator=(const ModelCorrection&) = default;
   virtual ~ModelCorrection() = default;
 
-  /// The loop with what these errors explain of y - y_sim added to y_sim: what is left is new. `whole` is
-  /// where the record of a window is kept; it must outlive the loop.
-  virtual AssessedLoop corrected(const AssessedLoop& loop, AssessedLoop& whole) const = 0;
+  /// The loop with what these errors explain of y - y_sim added to y_sim: what is left is new. It is derived
+  /// from `loop`.
+  virtual std::shared_ptr<const AssessedLoop> corrected(const AssessedLoop& loop) const = 0;
 };
 
-/// What a method may know besides the records of the loop. `study` and `basis` must outlive it.
+/// What a method may know besides the records of the loop. `study` and `basis` must outlive it. What methods
+/// make of it once for all loops under it is in `derived`. What they make of benchmark, correction and model
+/// alone is in `of_benchmark`, which contexts of other excitations share; a context whose benchmark or
+/// correction is changed needs a new one. Neither keeps anything but in a panel (MethodPanel).
 struct AssessmentContext {
   const Study& study;      ///< the nominal model, the controller and the options of the methods
   const BasisCase& basis;  ///< the operating point and T0
@@ -121,6 +136,8 @@ struct AssessmentContext {
   /// What the benchmark shows of the errors of the model; null: the model is taken for exact.
   std::shared_ptr<const ModelCorrection> correction = {};
   std::string not_learnt = {};  ///< why nothing can be learnt of them, where it should be; otherwise empty
+  std::shared_ptr<const DerivedValues> of_benchmark = std::make_shared<const DerivedValues>();
+  DerivedValues derived = {};
 
   const Study& study_of_benchmark() const { return benchmark_study ? *benchmark_study : study; }
 };

@@ -80,7 +80,8 @@ std::optional<std::string> unmet_requirement(const AssessmentRequirements& requi
 }
 
 Assessor::Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context)
-    : requirements_(info.requirements),
+    : name_(info.name),
+      requirements_(info.requirements),
       locates_cvs_(info.locates_cvs),
       relative_(info.relative && context.correction),
       context_(context),
@@ -90,21 +91,28 @@ Assessor::Assessor(const AssessmentMethodInfo& info, const AssessmentContext& co
   if (!holds_analyses_ && !relative_)
     return;
   seen_ = std::make_unique<AssessmentContext>(context_);
-  if (holds_analyses_ && seen_->benchmark)
-    seen_->benchmark = with_held(*context_.benchmark, held_benchmark_);
+  seen_->of_benchmark = std::make_shared<const DerivedValues>();
+  if (holds_analyses_ && seen_->benchmark) {
+    of_benchmark_ = with_held(*context_.benchmark);
+    seen_->benchmark = *of_benchmark_;
+  }
 }
 
-AssessedLoop Assessor::with_held(const AssessedLoop& loop, AssessedLoop& whole) const {
+std::shared_ptr<const AssessedLoop> Assessor::with_held(const AssessedLoop& loop) const {
   return with_analyses_held(
       context_.study, loop,
-      requirements_.analyses_as_shown ? AnalysesHeld::from_shown : AnalysesHeld::from_taken, whole);
+      requirements_.analyses_as_shown ? AnalysesHeld::from_shown : AnalysesHeld::from_taken);
 }
 
 Assessment Assessor::assess(const AssessedLoop& loop) {
-  return assess_seen(holds_analyses_ ? with_held(loop, held_) : loop);
+  return *loop.derived.of<const Assessment>(name_, [&] { return std::make_shared<Assessment>(asked(loop)); });
 }
 
-Assessment Assessor::assess_seen(const AssessedLoop& loop) {
+Assessment Assessor::asked(const AssessedLoop& loop) {
+  return holds_analyses_ ? asked_of_seen(*with_held(loop)) : asked_of_seen(loop);
+}
+
+Assessment Assessor::asked_of_seen(const AssessedLoop& loop) {
   if (const std::optional<std::string> unmet = unmet_requirement(requirements_, seen(), loop))
     return Assessment::not_applicable(*unmet);
   if (unusable_)
@@ -114,7 +122,7 @@ Assessment Assessor::assess_seen(const AssessedLoop& loop) {
   try {
     if (!method_)
       learn();
-    Assessment assessment = method_->assess(relative_ ? context_.correction->corrected(loop, whole_) : loop);
+    Assessment assessment = method_->assess(relative_ ? *context_.correction->corrected(loop) : loop);
     assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());
     if (assessment.status != AssessmentStatus::ok)
       return assessment;
@@ -132,8 +140,13 @@ Assessment Assessor::assess_seen(const AssessedLoop& loop) {
 
 void Assessor::learn() {
   try {
-    if (relative_ && seen_->benchmark)
-      seen_->benchmark = context_.correction->corrected(*seen_->benchmark, benchmark_);
+    if (relative_ && seen_->benchmark) {
+      const std::string key = fmt::format("corrected benchmark, held {} {}", holds_analyses_,
+                                          holds_analyses_ && requirements_.analyses_as_shown);
+      of_benchmark_ = context_.of_benchmark->of<const AssessedLoop>(
+          key, [&] { return context_.correction->corrected(*seen_->benchmark); });
+      seen_->benchmark = *of_benchmark_;
+    }
     method_ = make_(seen());
   } catch (const UnfitOption&) {
     throw;
@@ -141,6 +154,11 @@ void Assessor::learn() {
     unusable_ = error.what();
     throw;
   }
+}
+
+std::shared_ptr<Assessor> shared_assessor(const AssessmentMethodInfo& info,
+                                          const AssessmentContext& context) {
+  return context.derived.of<Assessor>(info.name, [&] { return std::make_shared<Assessor>(info, context); });
 }
 
 }  // namespace mpm

@@ -119,7 +119,8 @@ struct AssessmentMethodInfo : MethodDescription {
 std::optional<std::string> unmet_requirement(const AssessmentRequirements& requirements,
                                              const AssessmentContext& context, const AssessedLoop& loop);
 
-/// A method with its context. It checks first whether the method applies.
+/// A method with its context. It checks first whether the method applies. The answer is derived from the
+/// loop: while that keeps what is derived from it, the method is asked once, whoever asks.
 class Assessor {
  public:
   /// `context` must outlive the assessor.
@@ -132,11 +133,13 @@ class Assessor {
   Assessment assess(const AssessedLoop& loop);
 
  private:
-  Assessment assess_seen(const AssessedLoop& loop);
+  Assessment asked(const AssessedLoop& loop);
+  Assessment asked_of_seen(const AssessedLoop& loop);
   void learn();
-  AssessedLoop with_held(const AssessedLoop& loop, AssessedLoop& whole) const;
+  std::shared_ptr<const AssessedLoop> with_held(const AssessedLoop& loop) const;
   const AssessmentContext& seen() const { return seen_ ? *seen_ : context_; }
 
+  std::string name_;
   AssessmentRequirements requirements_;
   bool locates_cvs_;
   bool relative_;
@@ -144,10 +147,14 @@ class Assessor {
   std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext&)> make_;
   std::optional<std::string> unusable_;  ///< why nothing can be learnt from the benchmark
   bool holds_analyses_;
-  std::unique_ptr<AssessmentContext> seen_;   ///< of a method that is relative, or to which analyses are held
-  AssessedLoop held_benchmark_, held_;        ///< with_analyses_held()
-  AssessedLoop benchmark_, whole_;            ///< LearntModel::corrected
+  std::unique_ptr<AssessmentContext> seen_;  ///< of a method that is relative, or to which analyses are held
+  /// The record of the window that is the benchmark of `seen_`.
+  std::shared_ptr<const AssessedLoop> of_benchmark_;
   std::unique_ptr<AssessmentMethod> method_;  ///< made for the first loop to which it applies
 };
+
+/// The assessor of this method under the context, one for all that ask for it: the panel, and methods that
+/// ask another method. One of its own for each where the context keeps nothing.
+std::shared_ptr<Assessor> shared_assessor(const AssessmentMethodInfo& info, const AssessmentContext& context);
 
 }  // namespace mpm

@@ -7,40 +7,62 @@
 #include "base/system/thread_clock.hpp"
 
 namespace mpm {
-MethodPanel::MethodPanel(const Study& study, AssessmentContext context,
-                         const std::vector<std::string>& methods)
-    : study_(study), context_(std::move(context)), forms_(assessment_forms(study, methods)) {
-  for (const auto& form : forms_)
-    assessors_.emplace_back(method_table(study.assessment).method(form->method().name), context_);
-}
+namespace {
 
-AssessmentRecord MethodPanel::assessed(std::size_t method, const AssessedLoop& loop, const Own* own) {
-  if (own == nullptr)
-    return timed(method, assessors_[method], loop);
-  // The controller or the excitation is another one; the benchmark is still what the study was designed for.
-  const AssessmentContext context{
-      own->study,          own->basis,         context_.factory, context_.benchmark, context_.benchmark_study,
-      context_.correction, context_.not_learnt};
-  Assessor assessor(method_table(own->study.assessment).method(forms_[method]->method().name), context);
-  return timed(method, assessor, loop);
-}
-
-AssessmentRecord MethodPanel::timed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const {
+/// The answer of a method on the record, with its time, and on the windows.
+AssessmentRecord timed(const std::shared_ptr<const AssessmentForm>& form, const Study& study,
+                       Assessor& assessor, const AssessedLoop& loop) {
   const double start = thread_seconds();
-  AssessmentRecord record = kept(forms_[method], assessor.assess(loop));
+  AssessmentRecord record = kept(form, assessor.assess(loop));
   record.milliseconds = 1e3 * (thread_seconds() - start);
-  if (const auto& monitoring = study_.monitoring; monitoring && record.answered())
+  if (const auto& monitoring = study.monitoring; monitoring && record.answered())
     for (int window = 0; window < monitoring->count(static_cast<int>(loop.samples())); ++window)
       add_window(record, window,
-                 assessor.assess(window_of(loop, monitoring->begin(window), monitoring->window)));
+                 assessor.assess(*derived_window(loop, monitoring->begin(window), monitoring->window)));
   return record;
 }
 
-std::vector<AssessmentRecord> MethodPanel::assess(const AssessedLoop& loop, const Own* own) {
+/// A store of values, each paid by the first who asks for it.
+std::shared_ptr<const DerivedValues> kept_values() {
+  auto values = std::make_shared<DerivedValues>();
+  values->keep(PaidBy::first);
+  return values;
+}
+
+}  // namespace
+
+MethodPanel::MethodPanel(const Study& study, AssessmentContext context,
+                         const std::vector<std::string>& methods)
+    : study_(study), context_(std::move(context)), forms_(assessment_forms(study, methods)) {
+  context_.derived.keep(PaidBy::first);
+  context_.of_benchmark = kept_values();
+}
+
+std::vector<AssessmentRecord> MethodPanel::assessed(const AssessmentForms& forms, const AssessedLoop& loop,
+                                                    const Own* own) const {
+  std::optional<AssessmentContext> of_own;
+  if (own != nullptr) {
+    // The controller or the excitation is another one; the benchmark is still what the study was designed
+    // for.
+    const bool same_basis = &own->basis == &context_.basis;
+    of_own.emplace(AssessmentContext{own->study, own->basis, context_.factory, context_.benchmark,
+                                     context_.benchmark_study, context_.correction, context_.not_learnt,
+                                     same_basis ? context_.of_benchmark : kept_values()});
+    of_own->derived.keep(PaidBy::first);
+  }
+  const AssessmentContext& context = of_own ? *of_own : context_;
+  const MethodTable& table = method_table(own != nullptr ? own->study.assessment : study_.assessment);
+  AssessedLoop record = loop;
+  record.derived.keep(PaidBy::each);
   std::vector<AssessmentRecord> records;
-  for (std::size_t method = 0; method < forms_.size(); ++method)
-    records.push_back(assessed(method, loop, own));
+  for (const auto& form : forms)
+    records.push_back(
+        timed(form, study_, *shared_assessor(table.method(form->method().name), context), record));
   return records;
+}
+
+std::vector<AssessmentRecord> MethodPanel::assess(const AssessedLoop& loop, const Own* own) {
+  return assessed(forms_, loop, own);
 }
 
 std::optional<AssessmentRecord> MethodPanel::assess_by(std::string_view method, const AssessedLoop& loop,
@@ -49,7 +71,7 @@ std::optional<AssessmentRecord> MethodPanel::assess_by(std::string_view method, 
                                  [&](const auto& each) { return each->method().name == method; });
   if (form == forms_.end())
     return std::nullopt;
-  return assessed(static_cast<std::size_t>(form - forms_.begin()), loop, own);
+  return assessed({*form}, loop, own).front();
 }
 
 }  // namespace mpm

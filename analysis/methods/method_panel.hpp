@@ -14,7 +14,9 @@
 namespace mpm {
 
 /// The methods of a study, each with what it has learnt about the controller. Each thread has its own panel;
-/// an answer depends on the loop only.
+/// an answer depends on the loop only. What several methods derive from a loop or from the context is made
+/// once (AssessedLoop::derived, AssessmentContext::derived). The time of an answer has all that the method
+/// would have made of the loop if it were asked alone.
 class MethodPanel {
  public:
   /// Methods that assess loops of `study` by what they have learnt in `context`, whose basis case must have
@@ -40,14 +42,12 @@ class MethodPanel {
   const AssessmentForms& forms() const { return forms_; }
 
  private:
-  AssessmentRecord assessed(std::size_t method, const AssessedLoop& loop, const Own* own);
-  /// The answer of a method, its time for the whole record, and its windows.
-  AssessmentRecord timed(std::size_t method, Assessor& assessor, const AssessedLoop& loop) const;
+  std::vector<AssessmentRecord> assessed(const AssessmentForms& forms, const AssessedLoop& loop,
+                                         const Own* own) const;
 
   const Study& study_;
   AssessmentContext context_;
   AssessmentForms forms_;
-  std::vector<Assessor> assessors_;  ///< of loops under the controller of the study
 };
 
 }  // namespace mpm

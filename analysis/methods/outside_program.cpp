@@ -159,13 +159,13 @@ class ProgramMethod final : public AssessmentMethod {
         plant_(context.study.plant),
         context_(context_json(context)) {
     for (const std::string& name : description.methods)
-      told_.push_back({&assessment_method(name), {assessment_method(name), context}});
+      told_.push_back({&assessment_method(name), shared_assessor(assessment_method(name), context)});
   }
 
   Assessment assess(const AssessedLoop& loop) override {
     Json told = loop_json(loop);
     for (Told& each : told_)
-      told["answers"][each.method->name] = answer_json(each.assessor.assess(loop), plant_, *each.method);
+      told["answers"][each.method->name] = answer_json(each.assessor->assess(loop), plant_, *each.method);
     Json answer;
     std::unique_ptr<ProgramTalk> talk = std::move(talk_);
     try {
@@ -184,7 +184,7 @@ class ProgramMethod final : public AssessmentMethod {
   /// A method whose answers the program is told.
   struct Told {
     const AssessmentMethodInfo* method;
-    Assessor assessor;
+    std::shared_ptr<Assessor> assessor;
   };
 
   std::unique_ptr<ProgramTalk> begun() const {

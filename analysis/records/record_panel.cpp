@@ -133,6 +133,14 @@ AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record) {
   return loop;
 }
 
+RecordPanel::RecordPanel(const RecordFrame& frame) : frame_(frame) {
+  for (std::size_t m = 0; m < frame.methods.size(); ++m) {
+    Group& group = needs_every_sample(frame, frame.methods[m]) ? groups_.back() : groups_.front();
+    group.methods.push_back(frame.methods[m]);
+    group.places.push_back(m);
+  }
+}
+
 JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* healthy) {
   JudgedRecord judged{.loop = judged_loop(frame_, record), .said = {}};
   judged.benchmark = benchmark_of(frame_, record, judged.loop);
@@ -141,14 +149,13 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
   std::optional<AssessedLoop> good;
   if (has_benchmark)
     good = healthy == nullptr ? judged.loop : judged_loop(frame_, *healthy);
-  for (std::size_t m = 0; m < frame_.methods.size(); ++m) {
-    const std::string& name = frame_.methods[m];
-    const Study& study = frame_.study_of(name);
-    const bool closes = needs_every_sample(frame_, name);
+  judged.said.resize(frame_.methods.size());
+  for (Group& group : groups_) {
+    const bool closes = &group == &groups_.back();
+    const Study& study = closes ? frame_.closed : frame_.as_kept;
     const auto seen = [&](const AssessedLoop& loop) {
       return closes ? without_gaps(loop, frame_.unjudged, frame_.fill) : loop;
     };
-    const AssessedLoop loop = seen(judged.loop);
     const auto panel_with = [&](const AssessedLoop* of_benchmark) {
       AssessmentContext context{study, frame_.basis, frame_.factory,
                                 of_benchmark != nullptr ? window_of(*of_benchmark, first, count)
@@ -156,16 +163,21 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
       learn_model(of_benchmark != nullptr ? *context.benchmark
                                           : without_moves(*context.benchmark, frame_.basis.point),
                   context);
-      return std::make_unique<MethodPanel>(study, std::move(context), std::vector{name});
+      return std::make_unique<MethodPanel>(study, std::move(context), group.methods);
     };
+    if (group.methods.empty())
+      continue;
+    std::vector<AssessmentRecord> said;
     if (has_benchmark) {
       const AssessedLoop of_benchmark = seen(*good);
-      judged.said.push_back(panel_with(&of_benchmark)->assess(loop).front());
-      continue;
+      said = panel_with(&of_benchmark)->assess(seen(judged.loop));
+    } else {
+      if (!group.panel)
+        group.panel = panel_with(nullptr);
+      said = group.panel->assess(seen(judged.loop));
     }
-    if (m == panels_.size())
-      panels_.push_back(panel_with(nullptr));
-    judged.said.push_back(panels_[m]->assess(loop).front());
+    for (std::size_t m = 0; m < said.size(); ++m)
+      judged.said[group.places[m]] = std::move(said[m]);
   }
   return judged;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -58,15 +60,22 @@ AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record);
 class RecordPanel {
  public:
   /// The frame must outlive the panel. Throws InputError for options of a method that do not fit.
-  explicit RecordPanel(const RecordFrame& frame) : frame_(frame) {}
+  explicit RecordPanel(const RecordFrame& frame);
 
   /// `healthy` is the same loop without its fault, from which a chosen benchmark is taken; null: the record
   /// itself. Throws InputError when no benchmark is found.
   JudgedRecord judge(const PlantRecord& record, const PlantRecord* healthy = nullptr);
 
  private:
+  /// Methods that see the same record and learn the same.
+  struct Group {
+    std::vector<std::string> methods = {};
+    std::vector<std::size_t> places = {};          ///< of these methods in the frame
+    std::unique_ptr<MethodPanel> panel = nullptr;  ///< without a benchmark of the record; made when needed
+  };
+
   const RecordFrame& frame_;
-  std::vector<std::unique_ptr<MethodPanel>> panels_;  ///< without a benchmark of the record; made when needed
+  std::array<Group, 2> groups_;  ///< of RecordFrame::as_kept, then RecordFrame::closed
 };
 
 }  // namespace mpm

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <boost/math/distributions/students_t.hpp>
+#include <fmt/format.h>
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
@@ -36,7 +38,17 @@ CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
       factory_(context.factory),
       y_set_(setpoints(context.study)),
       dither_(dither(context.study)),
-      loops_(static_cast<std::size_t>(context.study.cv_count()) + 1) {
+      noise_(*context.of_benchmark->of<const Eigen::VectorXd>("noise of counterfactual", [&] {
+        return std::make_shared<Eigen::VectorXd>(noise_of_benchmark(context));
+      })) {}
+
+std::shared_ptr<CounterfactualLoop> CounterfactualLoop::of_context(const AssessmentContext& context) {
+  return context.derived.of<CounterfactualLoop>(
+      "", [&] { return std::make_shared<CounterfactualLoop>(context); });
+}
+
+/// v, by the same loop as that of the benchmark without noise; empty if this does not run to its end.
+Eigen::VectorXd CounterfactualLoop::noise_of_benchmark(const AssessmentContext& context) const {
   const Eigen::MatrixXd y_basis = gaps_closed(recorded_basis(context));
   const Study& of_basis = context.study_of_benchmark();
   const SetpointTrajectories centres = variance_centres(of_basis, 0, y_basis.cols());
@@ -49,59 +61,55 @@ CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
                        .y_set = setpoints(of_basis),
                        .dither = dither_},
                       factory_);
-  if (nominal.status == ControlStatus::ok)
-    noise_ = noise_variance(variances(y_basis, centres), variances(nominal.y, centres));
+  return nominal.status == ControlStatus::ok
+             ? noise_variance(variances(y_basis, centres), variances(nominal.y, centres))
+             : Eigen::VectorXd();
 }
 
-Assessment CounterfactualLoop::impact(const AssessedLoop& loop) {
+CounterfactualLoop::Impact CounterfactualLoop::impact(const AssessedLoop& loop) {
   if (noise_.size() == 0)
-    return Assessment::failed("the controller does not run on its own model without noise");
-  const AssessedLoop& whole = loop.from_start();
-  const Trajectory& nominal = simulated(0, whole.d, Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()));
+    return {Assessment::failed("the controller does not run on its own model without noise")};
+  const Trajectory& nominal = undisturbed(loop.from_start());
   if (nominal.status != ControlStatus::ok)
-    return Assessment::failed("the controller does not run on its own model under these disturbances");
-  Eigen::VectorXd ivar = indices(loop, nominal, noise_);
-  chance_.setZero(ivar.size());
-  if (learnt_ && outside(ivar))
-    if (const std::optional<Eigen::VectorXd> under_noise = indices_under_noise(loop))
-      ivar = *under_noise;
+    return {Assessment::failed("the controller does not run on its own model under these disturbances")};
+  Indices found{indices(loop, nominal.y, noise_), {}};
+  found.chance.setZero(found.ivar.size());
+  if (learnt_ && outside(found.ivar))
+    if (std::optional<Indices> under_noise = indices_under_noise(loop))
+      found = std::move(*under_noise);
   Assessment assessment;
-  for (Eigen::Index cv = 0; cv < ivar.size(); ++cv) {
-    assessment.score = std::fmax(assessment.score, distance(ivar(cv), cv));
-    assessment.flagged = assessment.flagged || has_impact(ivar(cv), cv);
-    assessment.numbers.push_back({"ivar", ivar(cv), cv});
+  for (Eigen::Index cv = 0; cv < found.ivar.size(); ++cv) {
+    const double ivar = found.ivar(cv), chance = found.chance(cv);
+    assessment.score = std::fmax(assessment.score, distance(ivar, chance));
+    assessment.flagged = assessment.flagged || has_impact(ivar, chance);
+    assessment.numbers.push_back({"ivar", ivar, cv});
   }
-  return assessment;
+  return {std::move(assessment), std::move(found.chance)};
 }
 
-Eigen::VectorXd CounterfactualLoop::ivar_diag(const AssessedLoop& loop) {
+Eigen::VectorXd CounterfactualLoop::ivar_diag(const AssessedLoop& loop, const Impact& impact) const {
   const AssessedLoop& whole = loop.from_start();
-  AssessedLoop corrected;
-  const Eigen::MatrixXd e = errors_of(study_, learnt_ ? learnt_->corrected(whole, corrected) : whole);
-  const bool is_drawn = chance_.size() > 0 && chance_.maxCoeff() > 0.0;
-  const Eigen::MatrixXd noise = is_drawn ? drawn_noise_of(e.cols(), 0) : Eigen::MatrixXd();
-  const Eigen::VectorXd added = is_drawn ? Eigen::VectorXd::Zero(e.rows()) : noise_;
-  Eigen::VectorXd found(e.rows());
-  for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
-    Eigen::MatrixXd others = e;
-    if (is_drawn)
-      others.row(cv) = noise.row(cv);
-    else
-      others.row(cv).setZero();
-    const Trajectory& nominal = simulated(static_cast<std::size_t>(cv) + 1, whole.d, others);
-    found(cv) = nominal.status == ControlStatus::ok ? indices(loop, nominal, added)(cv) : kNaN;
+  const bool is_drawn = impact.chance.size() > 0 && impact.chance.maxCoeff() > 0.0;
+  const Eigen::VectorXd added = is_drawn ? Eigen::VectorXd::Zero(whole.y.rows()) : noise_;
+  Eigen::VectorXd found(whole.y.rows());
+  for (Eigen::Index cv = 0; cv < found.size(); ++cv) {
+    const auto y = whole.derived.of<const Eigen::MatrixXd>(
+        fmt::format("y0_diag of CV {}, noise {}", cv, is_drawn),
+        [&] { return std::make_shared<Eigen::MatrixXd>(disturbed_output(whole, cv, is_drawn)); });
+    found(cv) = y->size() > 0 ? indices(loop, *y, added)(cv) : kNaN;
   }
   return found;
 }
 
 std::vector<CvAssessment> CounterfactualLoop::located(const Eigen::VectorXd& ivar_diag,
-                                                      const Assessment& impact) const {
+                                                      const Impact& impact) const {
   const bool has_none = ivar_diag.array().isNaN().all();
   std::vector<CvAssessment> cvs(static_cast<std::size_t>(ivar_diag.size()));
   for (Eigen::Index cv = 0; cv < ivar_diag.size(); ++cv) {
-    const double ivar = has_none ? impact.number("ivar", cv) : ivar_diag(cv);
+    const double ivar = has_none ? impact.assessment.number("ivar", cv) : ivar_diag(cv);
     if (!std::isnan(ivar))
-      cvs[static_cast<std::size_t>(cv)] = {has_impact(ivar, cv), distance(ivar, cv)};
+      cvs[static_cast<std::size_t>(cv)] = {has_impact(ivar, impact.chance(cv)),
+                                           distance(ivar, impact.chance(cv))};
   }
   return cvs;
 }
@@ -111,19 +119,19 @@ bool CounterfactualLoop::outside(const Eigen::VectorXd& ivar) const {
                      [&](double each) { return study_.diagnosis.has_impact(each); });
 }
 
-bool CounterfactualLoop::has_impact(double ivar, Eigen::Index cv) const {
-  return study_.diagnosis.has_impact(ivar) && std::abs(std::log(ivar)) > chance_(cv);
+bool CounterfactualLoop::has_impact(double ivar, double chance) const {
+  return study_.diagnosis.has_impact(ivar) && std::abs(std::log(ivar)) > chance;
 }
 
 /// Of a variance index from 1, as the study measures it to locate a CV, as far as chance does not make it.
-double CounterfactualLoop::distance(double ivar, Eigen::Index cv) const {
+double CounterfactualLoop::distance(double ivar, double chance) const {
   const DiagnosisOptions& options = study_.diagnosis;
   const double from_one = distance_from_one(ivar, options.location_distance);
-  if (chance_(cv) == 0.0)
+  if (chance == 0.0)
     return from_one;
   const double edge =
       distance_from_one(ivar > 1.0 ? options.impact_upper : options.impact_lower, options.location_distance);
-  return std::min(from_one, edge * std::abs(std::log(ivar)) / chance_(cv));
+  return std::min(from_one, edge * std::abs(std::log(ivar)) / chance);
 }
 
 /// ny x N of the noise that the benchmark has shown, added to the outputs.
@@ -142,13 +150,7 @@ const std::vector<Eigen::MatrixXd>& CounterfactualLoop::outputs_under_noise(cons
   drawn_d_ = d;
   drawn_y_.clear();
   for (int draw = 0; draw < kNoiseDraws; ++draw) {
-    Trajectory nominal = run_closed_loop(study_, plant_,
-                                         {.d = d,
-                                          .noise = Eigen::MatrixXd::Zero(study_.cv_count(), d.cols()),
-                                          .y_d = drawn_noise_of(d.cols(), draw),
-                                          .y_set = y_set_,
-                                          .dither = dither_},
-                                         factory_);
+    Trajectory nominal = simulated(d, drawn_noise_of(d.cols(), draw));
     if (nominal.status != ControlStatus::ok) {
       drawn_y_.clear();
       break;
@@ -158,9 +160,9 @@ const std::vector<Eigen::MatrixXd>& CounterfactualLoop::outputs_under_noise(cons
   return drawn_y_;
 }
 
-/// Ivar with the mean of the nominal variance over draws of the noise, ny, and what chance makes of it; none
-/// if a loop does not run to its end.
-std::optional<Eigen::VectorXd> CounterfactualLoop::indices_under_noise(const AssessedLoop& loop) {
+/// Ivar with the mean of the nominal variance over draws of the noise; none if a loop does not run to its
+/// end.
+std::optional<CounterfactualLoop::Indices> CounterfactualLoop::indices_under_noise(const AssessedLoop& loop) {
   const AssessedLoop& whole = loop.from_start();
   const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
   const std::vector<Eigen::MatrixXd>& outputs = outputs_under_noise(whole.d);
@@ -174,9 +176,9 @@ std::optional<Eigen::VectorXd> CounterfactualLoop::indices_under_noise(const Ass
   const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 1.0 - 0.5 * tails);
   const Eigen::ArrayXXd logs = drawn.log();
   const Eigen::ArrayXd squares = (logs.colwise() - logs.rowwise().mean()).square().rowwise().sum();
-  chance_ = t * (squares * (1.0 + 1.0 / n) / (n - 1.0)).sqrt();
+  const Eigen::VectorXd chance = t * (squares * (1.0 + 1.0 / n) / (n - 1.0)).sqrt();
   const Eigen::MatrixXd y = loop.in_window(from_washout(study_, whole.y_sim) + errors_of(study_, whole));
-  return variances(y, centres).cwiseQuotient(drawn.rowwise().mean().matrix());
+  return Indices{variances(y, centres).cwiseQuotient(drawn.rowwise().mean().matrix()), chance};
 }
 
 /// v of each CV from the variances of the benchmark and of the same loop without noise.
@@ -194,29 +196,46 @@ Eigen::VectorXd CounterfactualLoop::noise_variance(const Eigen::VectorXd& noisy,
 }
 
 /// The loop of the controller on its model under the disturbances `d`, with `errors` added to the outputs.
-/// Each place keeps its last one: windows of a record ask for the same, and so do all records whose
-/// disturbances are those of the study.
-const Trajectory& CounterfactualLoop::simulated(std::size_t place, const Eigen::MatrixXd& d,
-                                                const Eigen::MatrixXd& errors) {
-  Simulated& kept = loops_[place];
-  if (kept.loop.y.size() == 0 || kept.d != d || kept.errors != errors) {
-    const LoopSignals signals{.d = d,
-                              .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
-                              .y_d = errors,
-                              .y_set = y_set_,
-                              .dither = dither_};
-    kept = {d, errors, run_closed_loop(study_, plant_, signals, factory_)};
+Trajectory CounterfactualLoop::simulated(const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors) const {
+  return run_closed_loop(study_, plant_,
+                         {.d = d,
+                          .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
+                          .y_d = errors,
+                          .y_set = y_set_,
+                          .dither = dither_},
+                         factory_);
+}
+
+/// The same without errors. The last one is kept: windows of a record ask for the same, and so do all records
+/// whose disturbances are those of the study.
+const Trajectory& CounterfactualLoop::undisturbed(const AssessedLoop& whole) {
+  if (nominal_.y.cols() != whole.samples() || nominal_d_ != whole.d) {
+    nominal_d_ = whole.d;
+    nominal_ = simulated(whole.d, Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()));
   }
-  return kept.loop;
+  return nominal_;
+}
+
+/// y0_diag of the record for CV `cv`, with the first draw of the noise in it if that `is_drawn`; empty if the
+/// loop does not run to its end.
+Eigen::MatrixXd CounterfactualLoop::disturbed_output(const AssessedLoop& whole, Eigen::Index cv,
+                                                     bool is_drawn) const {
+  Eigen::MatrixXd errors = learnt_ ? errors_of(study_, *learnt_->corrected(whole)) : errors_of(study_, whole);
+  if (is_drawn)
+    errors.row(cv) = drawn_noise_of(errors.cols(), 0).row(cv);
+  else
+    errors.row(cv).setZero();
+  Trajectory nominal = simulated(whole.d, errors);
+  return nominal.status == ControlStatus::ok ? std::move(nominal.y) : Eigen::MatrixXd();
 }
 
 /// var y / (var y0 + v) of each CV, ny.
-Eigen::VectorXd CounterfactualLoop::indices(const AssessedLoop& loop, const Trajectory& nominal,
+Eigen::VectorXd CounterfactualLoop::indices(const AssessedLoop& loop, const Eigen::MatrixXd& nominal,
                                             const Eigen::Ref<const Eigen::VectorXd>& added) const {
   const AssessedLoop& whole = loop.from_start();
   const Eigen::MatrixXd y = loop.in_window(from_washout(study_, whole.y_sim) + errors_of(study_, whole));
   const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
-  const Eigen::ArrayXd of_nominal = variance_indices(y, loop.in_window(nominal.y), centres);
+  const Eigen::ArrayXd of_nominal = variance_indices(y, loop.in_window(nominal), centres);
   // A v below 0 can outweigh a y0 that hardly moves: the nominal variance is not taken for less than a
   // tenth of its own.
   const Eigen::ArrayXd inverse = of_nominal.inverse() + added.array() / variances(y, centres).array();

@@ -55,55 +55,69 @@ struct CounterfactualOptions {
 /// y0_diag with the first draw in CV i; t is the quantile of Student's distribution beyond which chance alone
 /// takes some CV with the probability kChance. An impact needs |log Ivar| > c, and the distance of Ivar from
 /// 1 counts as min(distance, a |log Ivar| / c) with a that of the edge of the band.
+///
+/// All methods under one context share one (of_context()), and with it the loops that it has simulated.
 class CounterfactualLoop {
  public:
+  /// What Ivar says of a loop.
+  struct Impact {
+    /// Flagged if some Ivar lies outside the band of impact, with the number `ivar` of each CV and no verdict
+    /// on single CVs; failed if the controller does not run on its own model.
+    Assessment assessment = {};
+    Eigen::VectorXd chance = {};  ///< c of each CV; 0: no draws
+  };
+
   /// `context` must outlive it.
   explicit CounterfactualLoop(const AssessmentContext& context);
 
-  /// Flagged if some Ivar lies outside the band of impact, with the number `ivar` of each CV and no verdict
-  /// on single CVs; failed if the controller does not run on its own model. Simulates one closed loop, and
-  /// kNoiseDraws more if an Ivar is outside; none of them if the disturbances are those of the record before.
-  Assessment impact(const AssessedLoop& loop);
+  /// That of the context, AssessmentContext::derived.
+  static std::shared_ptr<CounterfactualLoop> of_context(const AssessmentContext& context);
+
+  /// Simulates one closed loop, and kNoiseDraws more if an Ivar is outside; none of them if the disturbances
+  /// are those of the record before.
+  Impact impact(const AssessedLoop& loop);
 
   /// Ivar_diag of each CV, ny; NaN if its loop does not run to its end. Simulates one closed loop for each
-  /// CV.
-  Eigen::VectorXd ivar_diag(const AssessedLoop& loop);
+  /// CV, derived from the record.
+  Eigen::VectorXd ivar_diag(const AssessedLoop& loop, const Impact& impact) const;
 
   /// The verdict of Ivar_diag on each CV of a flagged loop; none where it is NaN. If all are NaN, no loop
   /// runs to its end under the errors of the others, and Ivar of `impact` decides.
-  std::vector<CvAssessment> located(const Eigen::VectorXd& ivar_diag, const Assessment& impact) const;
+  std::vector<CvAssessment> located(const Eigen::VectorXd& ivar_diag, const Impact& impact) const;
 
  private:
   static constexpr int kNoiseDraws = 16;
   static constexpr double kChance = 0.01;
 
-  /// A loop that was simulated, with what it was simulated under.
-  struct Simulated {
-    Eigen::MatrixXd d, errors;
-    Trajectory loop;
+  /// Ivar of each CV and what chance makes of it.
+  struct Indices {
+    Eigen::VectorXd ivar, chance;
   };
 
-  const Trajectory& simulated(std::size_t place, const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors);
+  Eigen::VectorXd noise_of_benchmark(const AssessmentContext& context) const;
+  Trajectory simulated(const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors) const;
+  const Trajectory& undisturbed(const AssessedLoop& whole);
+  Eigen::MatrixXd disturbed_output(const AssessedLoop& whole, Eigen::Index cv, bool is_drawn) const;
   Eigen::VectorXd noise_variance(const Eigen::VectorXd& noisy, const Eigen::VectorXd& quiet) const;
-  Eigen::VectorXd indices(const AssessedLoop& loop, const Trajectory& nominal,
+  Eigen::VectorXd indices(const AssessedLoop& loop, const Eigen::MatrixXd& nominal,
                           const Eigen::Ref<const Eigen::VectorXd>& added) const;
-  std::optional<Eigen::VectorXd> indices_under_noise(const AssessedLoop& loop);
+  std::optional<Indices> indices_under_noise(const AssessedLoop& loop);
   const std::vector<Eigen::MatrixXd>& outputs_under_noise(const Eigen::MatrixXd& d);
   Eigen::MatrixXd drawn_noise_of(Eigen::Index samples, int draw) const;
   bool outside(const Eigen::VectorXd& ivar) const;
-  bool has_impact(double ivar, Eigen::Index cv) const;
-  double distance(double ivar, Eigen::Index cv) const;
+  bool has_impact(double ivar, double chance) const;
+  double distance(double ivar, double chance) const;
 
   const Study& study_;
   std::shared_ptr<const LearntModel> learnt_;
   TransferMatrix plant_;  ///< G0, or what the benchmark has shown of the plant
   QpSolverFactory factory_;
   Eigen::MatrixXd y_set_, dither_;
-  std::vector<Simulated> loops_;          ///< y0, then y0_diag of each CV
+  Eigen::MatrixXd nominal_d_;             ///< under which `nominal_` was simulated
+  Trajectory nominal_;                    ///< that of y0; empty before the first record
   Eigen::MatrixXd drawn_d_;               ///< under which `drawn_y_` was simulated
   std::vector<Eigen::MatrixXd> drawn_y_;  ///< y0 under each draw; empty where one does not run to its end
   Eigen::VectorXd noise_;                 ///< v of each CV; empty when the basis case cannot be simulated
-  Eigen::VectorXd chance_;                ///< c of each CV of the last record; 0: no draws
 };
 
 }  // namespace mpm

@@ -17,25 +17,27 @@ OptionKeys keys(CounterfactualOptions& options) {
 /// The impact by CounterfactualLoop; of a flagged loop, that of each CV.
 class Counterfactual final : public AssessmentMethod {
  public:
-  explicit Counterfactual(const AssessmentContext& context) : nominal_(context) {}
+  explicit Counterfactual(const AssessmentContext& context)
+      : nominal_(CounterfactualLoop::of_context(context)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
-    Assessment assessment = nominal_.impact(loop);
+    const CounterfactualLoop::Impact impact = nominal_->impact(loop);
+    Assessment assessment = impact.assessment;
     if (assessment.status != AssessmentStatus::ok)
       return assessment;
     if (!assessment.flagged) {
       assessment.cvs.resize(static_cast<std::size_t>(loop.y.rows()));
       return assessment;
     }
-    const Eigen::VectorXd ivar_diag = nominal_.ivar_diag(loop);
-    assessment.cvs = nominal_.located(ivar_diag, assessment);
+    const Eigen::VectorXd ivar_diag = nominal_->ivar_diag(loop, impact);
+    assessment.cvs = nominal_->located(ivar_diag, impact);
     for (Eigen::Index cv = 0; cv < ivar_diag.size(); ++cv)
       assessment.numbers.push_back({"ivar_diag", ivar_diag(cv), cv});
     return assessment;
   }
 
  private:
-  CounterfactualLoop nominal_;
+  std::shared_ptr<CounterfactualLoop> nominal_;
 };
 
 }  // namespace

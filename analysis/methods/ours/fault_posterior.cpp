@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/input_disturbance.hpp"
@@ -190,36 +193,103 @@ bool draws_known_faults(const Study& study) {
   return study.experiments.mpm + study.experiments.ud + study.experiments.mpm_ud > 0;
 }
 
+/// What is known of the faults before a record is seen: the same for all loops of a benchmark
+/// (AssessmentContext::of_benchmark).
+class FaultKnowledge {
+ public:
+  FaultKnowledge(const AssessmentContext& context, FaultPriors priors)
+      : models_(learnt_models(context, priors)),
+        priors_(fault_priors(
+            context.study, priors, context.study.assessment.of<LikelihoodOptions>().fault_probability,
+            deviations(models_, context.correction != nullptr), context.correction != nullptr)) {
+    const Study& study = context.study;
+    if (priors == FaultPriors::study && !noise_is_known(study))
+      priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
+    if (const auto learnt = learnt_model(context); priors != FaultPriors::study && learnt)
+      discount_false_faults(context, *learnt);
+    for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study, priors_) : priors_;
+    if (priors == FaultPriors::study && !draws_known_faults(study))
+      priors_ = for_scores_;
+    for (std::size_t cv = 0; cv < models_.size(); ++cv)
+      likelihoods_.push_back(std::make_unique<const CvLikelihood>(models_[cv], study.controller.sample_time,
+                                                                  priors_.cvs[cv], priors_.noise_freedom,
+                                                                  priors_.starts_from_rest));
+  }
+  FaultKnowledge(const FaultKnowledge&) = delete;
+  FaultKnowledge& operator=(const FaultKnowledge&) = delete;
+
+  const std::vector<ModelErrors>& models() const { return models_; }
+  const FaultPriorSet& priors() const { return priors_; }
+  const FaultPriorSet& for_scores() const { return for_scores_; }
+  const CvLikelihood& of(std::size_t cv) const { return *likelihoods_[cv]; }
+
+ private:
+  static constexpr double kHalves = 2.0;  ///< of the benchmark in a record: log L grows with the samples
+  /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
+  static constexpr double kUnknownNoise = 4.0;
+
+  /// A fault must be more probable than the false ones that one half of the benchmark shows under what the
+  /// other half teaches, in a record of the length of both: there the model of the errors is wrong (a
+  /// nonlinear plant). Where it is right, the halves show none, and the priors stay.
+  void discount_false_faults(const AssessmentContext& context, const LearntModel& learnt) {
+    const Study& study = context.study;
+    const AssessedLoop& benchmark = *context.benchmark;
+    const Eigen::VectorXd initial = initial_inputs(context);
+    const Eigen::MatrixXd inputs = model_inputs(benchmark.from_start());
+    const Eigen::Index middle = benchmark.first + benchmark.samples() / 2;
+    for (std::size_t i = 0; i < priors_.cvs.size(); ++i) {
+      CvPrior& prior = priors_.cvs[i];
+      const auto cv = static_cast<Eigen::Index>(i);
+      if (!learnt.of(cv).are_doubtful())
+        continue;
+      double false_odds = 0.0;
+      for (const bool first : {true, false}) {
+        const auto learns = [&](Eigen::Index k) { return (k < middle) == first; };
+        const std::optional<ModelErrors> half = learnt.of_part(study, benchmark, cv, learns);
+        Eigen::RowVectorXd other = errors_in_window(benchmark, cv);
+        for (Eigen::Index k = 0; k < other.size(); ++k)
+          if (learns(k))
+            other(k) = kNaN;
+        if (!half || other.array().isNaN().all())
+          continue;
+        const CvLikelihood likelihood(*half, study.controller.sample_time, prior, priors_.noise_freedom,
+                                      priors_.starts_from_rest);
+        false_odds = std::max(
+            false_odds,
+            weights_of_cv(prior, likelihood.of(other, inputs, initial, Eigen::MatrixXd(0, other.size())))
+                .all());
+      }
+      const double left = std::exp(-kHalves * false_odds);
+      prior.mpm *= left;
+      prior.ud *= left;
+      prior.both *= left;
+      priors_.input *= left;
+    }
+  }
+
+  std::vector<ModelErrors> models_;
+  FaultPriorSet priors_, for_scores_;
+  std::vector<std::unique_ptr<const CvLikelihood>> likelihoods_;
+};
+
 class FaultPosterior final : public AssessmentMethod {
  public:
   FaultPosterior(const AssessmentContext& context, FaultPriors priors)
       : study_(context.study),
         initial_(initial_inputs(context)),
-        models_(learnt_models(context, priors)),
-        priors_(fault_priors(
-            context.study, priors, context.study.assessment.of<LikelihoodOptions>().fault_probability,
-            deviations(models_, context.correction != nullptr), context.correction != nullptr)) {
-    if (priors == FaultPriors::study && !noise_is_known(study_))
-      priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
-    if (const auto learnt = learnt_model(context); priors != FaultPriors::study && learnt)
-      discount_false_faults(*learnt, *context.benchmark);
+        known_(context.of_benchmark->of<const FaultKnowledge>(
+            fmt::format("priors {}", static_cast<int>(priors)),
+            [&] { return std::make_shared<FaultKnowledge>(context, priors); })) {
     const FaultHypotheses asked = study_.assessment.of<LikelihoodOptions>().hypotheses;
     asks_more_ = priors != FaultPriors::study &&
                  (asked == FaultHypotheses::all || (asked == FaultHypotheses::learnt && context.correction));
-    for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study_, priors_) : priors_;
-    if (priors == FaultPriors::study && !draws_known_faults(study_))
-      priors_ = for_scores_;
-    for (std::size_t cv = 0; cv < models_.size(); ++cv)
-      likelihoods_.push_back(std::make_unique<CvLikelihood>(models_[cv], study_.controller.sample_time,
-                                                            priors_.cvs[cv], priors_.noise_freedom,
-                                                            priors_.starts_from_rest));
   }
 
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::MatrixXd inputs = model_inputs(loop.from_start());
     std::vector<CvEvidence> evidence;
     std::vector<Eigen::RowVectorXd> errors;
-    for (std::size_t i = 0; i < likelihoods_.size(); ++i) {
+    for (std::size_t i = 0; i < known_->models().size(); ++i) {
       const auto cv = static_cast<Eigen::Index>(i);
       // A window is the record up to its end in which nothing is observed before it: what the inputs did
       // before is known, and a disturbance may have been there.
@@ -228,22 +298,22 @@ class FaultPosterior final : public AssessmentMethod {
       if (e.array().isNaN().all())
         return Assessment::failed("a CV has no sample");
       evidence.push_back(
-          likelihoods_[i]->of(e, inputs.leftCols(e.size()), initial_, untold_of(loop, cv, e.size())));
+          known_->of(i).of(e, inputs.leftCols(e.size()), initial_, untold_of(loop, cv, e.size())));
       errors.push_back(std::move(e));
     }
-    FaultProbabilities probabilities = fault_probabilities(priors_, evidence);
+    FaultProbabilities probabilities = fault_probabilities(known_->priors(), evidence);
     if (!asks_more_ || !is_flagged(probabilities))
-      return answer(probabilities, fault_probabilities(for_scores_, evidence), evidence);
+      return answer(probabilities, fault_probabilities(known_->for_scores(), evidence), evidence);
     const std::vector<Eigen::MatrixXd> series = healthy_series(loop, errors, inputs);
     const double of_input = input_weight(evidence, series);
     const StuckMv valve = stuck_mv(evidence, series, inputs);
-    for (std::size_t i = 0; i < likelihoods_.size(); ++i)
+    for (std::size_t i = 0; i < known_->models().size(); ++i)
       if (is_suspect(probabilities.cvs[i]))
-        likelihoods_[i]->add_growing(series[i], inputs.leftCols(series[i].cols()), initial_,
-                                     untold_of(loop, static_cast<Eigen::Index>(i), series[i].cols()),
-                                     kGrowingShare, evidence[i]);
+        known_->of(i).add_growing(series[i], inputs.leftCols(series[i].cols()), initial_,
+                                  untold_of(loop, static_cast<Eigen::Index>(i), series[i].cols()),
+                                  kGrowingShare, evidence[i]);
     probabilities = with_sticky_valve(
-        with_input_disturbance(fault_probabilities(priors_, evidence), of_input), valve.log_weight);
+        with_input_disturbance(fault_probabilities(known_->priors(), evidence), of_input), valve.log_weight);
     Assessment assessment = answer(probabilities, probabilities, evidence);
     if (probabilities.other > 0.0)
       assessment.numbers.push_back({"valve_mv", static_cast<double>(valve.mv)});
@@ -274,8 +344,8 @@ class FaultPosterior final : public AssessmentMethod {
     std::vector<Eigen::MatrixXd> series;
     for (std::size_t i = 0; i < errors.size(); ++i)
       series.push_back(
-          likelihoods_[i]->healthy_series(errors[i], inputs.leftCols(errors[i].size()), initial_,
-                                          untold_of(loop, static_cast<Eigen::Index>(i), errors[i].size())));
+          known_->of(i).healthy_series(errors[i], inputs.leftCols(errors[i].size()), initial_,
+                                       untold_of(loop, static_cast<Eigen::Index>(i), errors[i].size())));
     return series;
   }
 
@@ -283,10 +353,11 @@ class FaultPosterior final : public AssessmentMethod {
   double input_weight(const std::vector<CvEvidence>& evidence,
                       const std::vector<Eigen::MatrixXd>& series) const {
     const double healthy = healthy_evidence(evidence);
-    const InputLikelihood likelihood(models_, series, study_.controller.sample_time, priors_.noise_freedom);
+    const InputLikelihood likelihood(known_->models(), series, study_.controller.sample_time,
+                                     known_->priors().noise_freedom);
     double sum = -kInfinity;
     for (const InputEvidence& of_mv : likelihood.of_mvs(study_.mv_count()))
-      sum = log_sum(sum, log_weight(priors_.input, of_mv.log_evidence, healthy));
+      sum = log_sum(sum, log_weight(known_->priors().input, of_mv.log_evidence, healthy));
     return sum;
   }
 
@@ -300,58 +371,19 @@ class FaultPosterior final : public AssessmentMethod {
                    const Eigen::MatrixXd& inputs) const {
     const double healthy = healthy_evidence(evidence);
     const std::vector<double> valves =
-        valve_log_evidence(models_, series, inputs, initial_, study_.mv_count(),
-                           study_.controller.sample_time, priors_.noise_freedom);
+        valve_log_evidence(known_->models(), series, inputs, initial_, study_.mv_count(),
+                           study_.controller.sample_time, known_->priors().noise_freedom);
     StuckMv found;
     for (std::size_t mv = 0; mv < valves.size(); ++mv) {
-      found.log_weight = log_sum(found.log_weight, log_weight(priors_.input, valves[mv], healthy));
+      found.log_weight = log_sum(found.log_weight, log_weight(known_->priors().input, valves[mv], healthy));
       if (valves[mv] > valves[found.mv])
         found.mv = mv;
     }
     return found;
   }
 
-  /// A fault must be more probable than the false ones that one half of the benchmark shows under what the
-  /// other half teaches, in a record of the length of both: there the model of the errors is wrong (a
-  /// nonlinear plant). Where it is right, the halves show none, and the priors stay.
-  void discount_false_faults(const LearntModel& learnt, const AssessedLoop& benchmark) {
-    const Eigen::MatrixXd inputs = model_inputs(benchmark.from_start());
-    const Eigen::Index middle = benchmark.first + benchmark.samples() / 2;
-    for (std::size_t i = 0; i < priors_.cvs.size(); ++i) {
-      CvPrior& prior = priors_.cvs[i];
-      const auto cv = static_cast<Eigen::Index>(i);
-      if (!learnt.of(cv).are_doubtful())
-        continue;
-      double false_odds = 0.0;
-      for (const bool first : {true, false}) {
-        const auto learns = [&](Eigen::Index k) { return (k < middle) == first; };
-        const std::optional<ModelErrors> half = learnt.of_part(study_, benchmark, cv, learns);
-        Eigen::RowVectorXd other = errors_in_window(benchmark, cv);
-        for (Eigen::Index k = 0; k < other.size(); ++k)
-          if (learns(k))
-            other(k) = kNaN;
-        if (!half || other.array().isNaN().all())
-          continue;
-        const CvLikelihood likelihood(*half, study_.controller.sample_time, prior, priors_.noise_freedom,
-                                      priors_.starts_from_rest);
-        false_odds = std::max(
-            false_odds,
-            weights_of_cv(prior, likelihood.of(other, inputs, initial_, Eigen::MatrixXd(0, other.size())))
-                .all());
-      }
-      const double left = std::exp(-kHalves * false_odds);
-      prior.mpm *= left;
-      prior.ud *= left;
-      prior.both *= left;
-      priors_.input *= left;
-    }
-  }
-
   static constexpr double kGrowingShare = 0.5;  ///< of mismatches that grow, against those that do not
   static constexpr double kSuspect = 1e-3;      ///< probability from which a CV is looked at more closely
-  static constexpr double kHalves = 2.0;  ///< of the benchmark in a record: log L grows with the samples
-  /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
-  static constexpr double kUnknownNoise = 4.0;
 
   Assessment answer(const FaultProbabilities& probabilities, const FaultProbabilities& scores,
                     const std::vector<CvEvidence>& evidence) const {
@@ -382,7 +414,7 @@ class FaultPosterior final : public AssessmentMethod {
     const auto likeliest = required_best_candidate("likelihoods of the mismatches of a CV", mismatches,
                                                    &MismatchEvidence::log_evidence);
     const SizePrior& named =
-        priors_.cvs[cv].mismatches[static_cast<std::size_t>(likeliest - mismatches.begin())];
+        known_->priors().cvs[cv].mismatches[static_cast<std::size_t>(likeliest - mismatches.begin())];
     assessment.flagged_channels.push_back(named.channel);
     if (!worst)
       return;
@@ -431,10 +463,8 @@ class FaultPosterior final : public AssessmentMethod {
 
   const Study& study_;
   Eigen::VectorXd initial_;
-  std::vector<ModelErrors> models_;
-  FaultPriorSet priors_, for_scores_;
+  std::shared_ptr<const FaultKnowledge> known_;
   bool asks_more_ = false;  ///< beside the basic hypotheses
-  std::vector<std::unique_ptr<CvLikelihood>> likelihoods_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -365,16 +366,12 @@ TransferMatrix LearntModel::plant() const {
   return plant;
 }
 
-AssessedLoop LearntModel::corrected(const AssessedLoop& loop, AssessedLoop& whole) const {
-  const Eigen::MatrixXd added = explained(loop);
-  if (!loop.whole) {
-    whole = loop;
-    whole.y_sim += added;
-    return whole;
-  }
-  whole = *loop.whole;
-  whole.y_sim += added;
-  return window_of(whole, loop.first, loop.samples());
+std::shared_ptr<const AssessedLoop> LearntModel::corrected(const AssessedLoop& loop) const {
+  return loop.derived.of<const AssessedLoop>("corrected by the benchmark", [&] {
+    AssessedLoop whole = loop.from_start();
+    whole.y_sim += explained(loop);
+    return same_window(loop, std::move(whole));
+  });
 }
 
 /// ny x N of the record; the samples of the window alone say what is most probable.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -143,7 +144,7 @@ class LearntModel final : public ModelCorrection {
   /// The model with the mean of its errors: the plant without a fault, as far as the benchmark shows it.
   TransferMatrix plant() const;
   /// By the mean of the errors, and by what of the rest is most probable given the loop.
-  AssessedLoop corrected(const AssessedLoop& loop, AssessedLoop& whole) const override;
+  std::shared_ptr<const AssessedLoop> corrected(const AssessedLoop& loop) const override;
 
  private:
   Eigen::MatrixXd explained(const AssessedLoop& loop) const;

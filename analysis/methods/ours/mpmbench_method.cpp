@@ -45,14 +45,15 @@ class Mpmbench final : public AssessmentMethod {
  public:
   explicit Mpmbench(const AssessmentContext& context)
       : learnt_(learnt_model(context)),
-        nominal_(context),
-        posterior_(assessment_method("likelihood"), context),
-        order_(assessment_method("order"), context) {}
+        nominal_(CounterfactualLoop::of_context(context)),
+        posterior_(shared_assessor(assessment_method("likelihood"), context)),
+        order_(shared_assessor(assessment_method("order"), context)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
-    Assessment assessment = nominal_.impact(loop);
+    const CounterfactualLoop::Impact impact = nominal_->impact(loop);
+    Assessment assessment = impact.assessment;
     if (assessment.status == AssessmentStatus::ok && assessment.flagged)
-      diagnose(loop, assessment);
+      diagnose(loop, impact, assessment);
     if (assessment.status == AssessmentStatus::ok && !assessment.flagged && assessment.cvs.empty())
       assessment.cvs.assign(static_cast<std::size_t>(loop.y.rows()), {.flagged = false, .score = 0.0});
     if (assessment.status == AssessmentStatus::ok && !assessment.flagged && learnt_)
@@ -63,7 +64,7 @@ class Mpmbench final : public AssessmentMethod {
  private:
   /// A fault that costs nothing is named as the source of its CV, and nothing is flagged.
   void name_without_impact(const AssessedLoop& loop, Assessment& assessment) {
-    const Assessment posterior = posterior_.assess(loop);
+    const Assessment posterior = posterior_->assess(loop);
     if (posterior.status != AssessmentStatus::ok || !posterior.flagged)
       return;
     assessment.cvs = posterior.cvs;
@@ -71,9 +72,9 @@ class Mpmbench final : public AssessmentMethod {
       cv.flagged = false;
   }
 
-  void diagnose(const AssessedLoop& loop, Assessment& assessment) {
-    const Assessment posterior = posterior_.assess(loop);
-    const Assessment order = order_.assess(loop);
+  void diagnose(const AssessedLoop& loop, const CounterfactualLoop::Impact& impact, Assessment& assessment) {
+    const Assessment posterior = posterior_->assess(loop);
+    const Assessment order = order_->assess(loop);
     const auto denies = [](const Assessment& said) {
       return said.status == AssessmentStatus::ok && !said.flagged;
     };
@@ -82,7 +83,7 @@ class Mpmbench final : public AssessmentMethod {
     if (!assessment.flagged)
       return;
     if (clean) {
-      assessment.cvs = nominal_.located(nominal_.ivar_diag(loop), assessment);
+      assessment.cvs = nominal_->located(nominal_->ivar_diag(loop, impact), impact);
       if (const std::optional<Eigen::Index> other = assessment.worst_cv())
         assessment.cvs[static_cast<std::size_t>(*other)].source = FaultSource::other;
       return;
@@ -93,7 +94,7 @@ class Mpmbench final : public AssessmentMethod {
     else if (order.status == AssessmentStatus::ok)
       assessment.cvs = order.cvs;
     else
-      assessment.cvs = nominal_.located(nominal_.ivar_diag(loop), assessment);
+      assessment.cvs = nominal_->located(nominal_->ivar_diag(loop, impact), impact);
     const std::optional<Eigen::Index> worst = assessment.worst_cv();
     if (!worst)
       return;
@@ -145,8 +146,8 @@ class Mpmbench final : public AssessmentMethod {
   }
 
   std::shared_ptr<const LearntModel> learnt_;
-  CounterfactualLoop nominal_;
-  Assessor posterior_, order_;
+  std::shared_ptr<CounterfactualLoop> nominal_;
+  std::shared_ptr<Assessor> posterior_, order_;
 };
 
 }  // namespace

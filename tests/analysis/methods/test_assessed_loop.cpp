@@ -362,8 +362,7 @@ TEST_CASE("a method that needs every sample gets analyses held, others what is t
   const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   const AssessedLoop& healthy = *context.benchmark;
   REQUIRE(healthy.y.row(1).hasNaN());
-  AssessedLoop whole;
-  const AssessedLoop held = with_analyses_held(study, healthy, AnalysesHeld::from_taken, whole);
+  const AssessedLoop held = *with_analyses_held(study, healthy, AnalysesHeld::from_taken);
   CHECK(held.y.row(0) == healthy.y.row(0));
   for (Eigen::Index k = 0; k + 6 < held.samples(); ++k) {
     CHECK(held.y(1, k) == healthy.y(1, k / 4 * 4));
@@ -371,10 +370,10 @@ TEST_CASE("a method that needs every sample gets analyses held, others what is t
   }
   AssessedLoop gap = healthy;
   gap.y(1, 40) = kNaN;  // an analysis that is missing is not replaced by the one before it
-  const AssessedLoop with_gap = with_analyses_held(study, gap, AnalysesHeld::from_taken, whole);
+  const AssessedLoop with_gap = *with_analyses_held(study, gap, AnalysesHeld::from_taken);
   CHECK(with_gap.y.row(1).segment(40, 4).array().isNaN().all());
   CHECK(with_gap.y.row(1).array().isNaN().count() == 4);
-  const AssessedLoop shown = with_analyses_held(study, healthy, AnalysesHeld::from_shown, whole);
+  const AssessedLoop shown = *with_analyses_held(study, healthy, AnalysesHeld::from_shown);
   const Eigen::Index samples = healthy.samples();
   CHECK(shown.y.rightCols(samples - 2) == basis.trajectory.y.rightCols(samples - 2));
   for (const char* name : {"botelho", "arx-oe", "sse", "likelihood", "variance-ratio"}) {

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -111,6 +112,35 @@ TEST_CASE("what a record cannot tell is unknown beside a mismatch, not taken for
     CHECK(said.predicted_source == FaultSource::mpm);
     const PlantRecord healthy = recorded_loop(study, study.plant.G, first);
     CHECK_FALSE(RecordPanel(frame).judge(healthy).said.front().flagged);
+  }
+}
+
+TEST_CASE("the methods of a record answer in their order, and as each alone", "[records]") {
+  const Study study = find_study("wood-berry");
+  PlantRecord record = recorded_loop(study, study.plant.G, 0);
+  record.y.block(0, 100, 2, 3).setConstant(kNaN);
+  // `sse` needs every sample, the others do not.
+  const std::vector<std::string> names{"order", "sse", "likelihood", "excitation"};
+  for (const std::pair<Eigen::Index, Eigen::Index> benchmark : {std::pair{0, 0}, std::pair{20, 180}}) {
+    record.benchmark = benchmark;
+    RecordFrame all = frame_of(record, true, 0.05);
+    all.methods = names;
+    all.fill = GapFill::linear;
+    RecordPanel panel(all);
+    for (int time = 0; time < 2; ++time) {
+      const std::vector<AssessmentRecord> said = panel.judge(record).said;
+      REQUIRE(said.size() == names.size());
+      for (std::size_t m = 0; m < names.size(); ++m) {
+        RecordFrame one = all;
+        one.methods = {names[m]};
+        const AssessmentRecord alone = RecordPanel(one).judge(record).said.front();
+        INFO(names[m] << ": " << said[m].reason);
+        CHECK(said[m].form->method().name == names[m]);
+        REQUIRE(said[m].answered());
+        CHECK(said[m].score == alone.score);
+        CHECK(said[m].predicted_cv == alone.predicted_cv);
+      }
+    }
   }
 }
 

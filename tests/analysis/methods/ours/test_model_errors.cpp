@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 
 #include <Eigen/Cholesky>
 #include <catch2/catch.hpp>
@@ -229,23 +230,23 @@ TEST_CASE("a loop is corrected by what its benchmark shows, a fault is not") {
     return std::sqrt((of.y - of.y_sim).row(0).squaredNorm() / static_cast<double>(of.samples()));
   };
   const LearntModel model(study, initial_u, loop(plant, 1), kShare, 0.5);
-  AssessedLoop whole;
   const AssessedLoop healthy = loop(plant, 2);
   CHECK(deviation(healthy) > 2.0 * kNoise);
-  CHECK(deviation(model.corrected(healthy, whole)) == Approx(kNoise).epsilon(0.1));
+  CHECK(deviation(*model.corrected(healthy)) == Approx(kNoise).epsilon(0.1));
   // A window of it, which refers to the corrected record.
-  const AssessedLoop window = model.corrected(window_of(healthy, 100, 200), whole);
-  CHECK(deviation(window) == Approx(kNoise).epsilon(0.15));
-  CHECK(window.whole == &whole);
+  const std::shared_ptr<const AssessedLoop> window = model.corrected(window_of(healthy, 100, 200));
+  CHECK(deviation(*window) == Approx(kNoise).epsilon(0.15));
+  REQUIRE(window->whole != nullptr);
+  CHECK(window->in_window(window->whole->y_sim) == window->y_sim);
 
   // Learnt from a period of a record, before which the inputs moved as well.
   const AssessedLoop record = loop(plant, 4);
   const LearntModel of_period(study, initial_u, window_of(record, 100, 300), kShare, 0.5);
-  CHECK(deviation(of_period.corrected(healthy, whole)) == Approx(kNoise).epsilon(0.15));
+  CHECK(deviation(*of_period.corrected(healthy)) == Approx(kNoise).epsilon(0.15));
 
   plant = with_mismatches(plant, {{0, 0, MismatchParameter::gain, 0.6}});
   const AssessedLoop faulty = loop(plant, 3);
-  CHECK(deviation(model.corrected(faulty, whole)) > 0.8 * deviation(faulty));
+  CHECK(deviation(*model.corrected(faulty)) > 0.8 * deviation(faulty));
 }
 
 }  // namespace mpm
