@@ -43,9 +43,9 @@ struct RepairGains {
 
 /// The gains of an experiment with mismatches of a linear plant, in expectation over `loops` loops with noise
 /// of their own. Empty without a mismatch, of a nonlinear plant, for 0 loops, and where the loop as it is or
-/// without the fault does not run to its end. `known` are the costs that fault_cost() found for this experiment
-/// of a study with worlds: its loops without the faults are those of J_0, and those with faults from the first
-/// sample on are those of J, so that only loops with a repaired model are run.
+/// without the fault does not run to its end. `known` are the costs that fault_cost() found for this
+/// experiment of a study with worlds: its loops without the faults are those of J_0, and those with faults
+/// from the first sample on are those of J, so that only loops with a repaired model are run.
 RepairGains repair_gains(const Study& study, const ExperimentDraw& draw, int loops,
                          const QpSolverFactory& factory, SolverStatistics& pilots,
                          const PilotCosts& known = {});

@@ -221,15 +221,6 @@ AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::In
           .first = first};
 }
 
-std::shared_ptr<const AssessedLoop> derived_window(const AssessedLoop& record, Eigen::Index first,
-                                                   Eigen::Index samples) {
-  return record.derived.of<const AssessedLoop>(fmt::format("window of {} from {}", samples, first), [&] {
-    auto window = std::make_shared<AssessedLoop>(window_of(record, first, samples));
-    window->derived.keep(PaidBy::each);
-    return window;
-  });
-}
-
 std::shared_ptr<AssessedLoop> same_window(const AssessedLoop& loop, AssessedLoop record) {
   struct Kept {
     AssessedLoop record, window;

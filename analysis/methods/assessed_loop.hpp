@@ -95,10 +95,6 @@ AssessedLoop window_of(const AssessedLoop& record, Eigen::Index first, Eigen::In
 /// From where on an analysis is held: the sample at which it was taken, or that at which it was shown.
 enum class AnalysesHeld { from_taken, from_shown };
 
-/// The same window as a value that is derived from the record, and whose own derived values are kept.
-std::shared_ptr<const AssessedLoop> derived_window(const AssessedLoop& record, Eigen::Index first,
-                                                   Eigen::Index samples);
-
 /// `record` where `loop` is whole, and of a window this window of it, which keeps the record alive: for a
 /// record that was made from that of `loop`, sample by sample. Derived values are kept.
 std::shared_ptr<AssessedLoop> same_window(const AssessedLoop& loop, AssessedLoop record);

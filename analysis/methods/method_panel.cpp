@@ -1,6 +1,7 @@
 #include "analysis/methods/method_panel.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "analysis/methods/method_table.hpp"
@@ -9,16 +10,12 @@
 namespace mpm {
 namespace {
 
-/// The answer of a method on the record, with its time, and on the windows.
-AssessmentRecord timed(const std::shared_ptr<const AssessmentForm>& form, const Study& study,
-                       Assessor& assessor, const AssessedLoop& loop) {
+/// The answer of a method, with its time.
+AssessmentRecord timed(const std::shared_ptr<const AssessmentForm>& form, Assessor& assessor,
+                       const AssessedLoop& loop) {
   const double start = thread_seconds();
   AssessmentRecord record = kept(form, assessor.assess(loop));
   record.milliseconds = 1e3 * (thread_seconds() - start);
-  if (const auto& monitoring = study.monitoring; monitoring && record.answered())
-    for (int window = 0; window < monitoring->count(static_cast<int>(loop.samples())); ++window)
-      add_window(record, window,
-                 assessor.assess(*derived_window(loop, monitoring->begin(window), monitoring->window)));
   return record;
 }
 
@@ -54,10 +51,21 @@ std::vector<AssessmentRecord> MethodPanel::assessed(const AssessmentForms& forms
   const MethodTable& table = method_table(own != nullptr ? own->study.assessment : study_.assessment);
   AssessedLoop record = loop;
   record.derived.keep(PaidBy::each);
+  std::vector<std::shared_ptr<Assessor>> assessors;
   std::vector<AssessmentRecord> records;
-  for (const auto& form : forms)
-    records.push_back(
-        timed(form, study_, *shared_assessor(table.method(form->method().name), context), record));
+  for (const auto& form : forms) {
+    assessors.push_back(shared_assessor(table.method(form->method().name), context));
+    records.push_back(timed(form, *assessors.back(), record));
+  }
+  // What is derived from a window may be as large as the record, and is gone with it.
+  const int windows = study_.monitoring ? study_.monitoring->count(static_cast<int>(loop.samples())) : 0;
+  for (int number = 0; number < windows; ++number) {
+    AssessedLoop window = window_of(record, study_.monitoring->begin(number), study_.monitoring->window);
+    window.derived.keep(PaidBy::each);
+    for (std::size_t method = 0; method < records.size(); ++method)
+      if (records[method].answered())
+        add_window(records[method], number, assessors[method]->assess(window));
+  }
   return records;
 }
 

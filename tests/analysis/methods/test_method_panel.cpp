@@ -29,7 +29,9 @@ namespace {
 /// What the methods of the tests have done.
 struct Count {
   int made = 0, asked = 0;
-  std::vector<const double*> y_sim = {};  ///< of each record that was seen
+  std::vector<const double*> y_sim = {};            ///< of each record that was seen
+  std::vector<std::weak_ptr<const int>> kept = {};  ///< values that were derived from each
+  std::ptrdiff_t most_kept = 0;                     ///< at once
 };
 
 using Counts = std::map<std::string, Count>;
@@ -44,6 +46,10 @@ class Counting final : public AssessmentMethod {
   Assessment assess(const AssessedLoop& loop) override {
     ++count_.asked;
     count_.y_sim.push_back(loop.y_sim.data());
+    count_.kept.emplace_back(loop.derived.of<const int>("", [] { return std::make_shared<int>(0); }));
+    count_.most_kept =
+        std::max(count_.most_kept, std::count_if(count_.kept.begin(), count_.kept.end(),
+                                                 [](const auto& value) { return !value.expired(); }));
     Assessment assessment;
     assessment.score = (loop.y - loop.y_sim).squaredNorm();
     if (other_)
@@ -127,6 +133,7 @@ TEST_CASE("a panel asks a method once for a record and once for a window, whoeve
       CHECK(counts["asker"].asked == record * (1 + windows));
     }
     CHECK(counts["asked"].made == 1);
+    CHECK(counts["asked"].most_kept == 2);  // of the record and of the window at hand
     // Nothing is left of a record for the next one, which may have other signals at the same place.
     AssessedLoop other = loop;
     other.y.array() += 1.0;
