@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -13,8 +16,11 @@
 #include "bench/console/output.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_markdown.hpp"
 #include "results/gates/board_gates.hpp"
 #include "results/gates/gate_check.hpp"
+#include "results/gates/gate_document.hpp"
 #include "results/gates/gate_file.hpp"
 #include "results/gates/gate_report.hpp"
 #include "results/suite/board_file.hpp"
@@ -28,14 +34,54 @@ struct CheckArguments {
   std::string archive;
   std::string gates;
   std::string suite;
-  std::string junit;  ///< no file when empty
+  std::string junit;  ///< files to write; none when empty
+  std::string markdown;
+  std::string badge;
+  bool json = false;
+  bool quiet = false;
 };
+
+/// A file that a check writes.
+struct CheckOutput {
+  const char* option;
+  const std::string& path;
+  const char* what;
+};
+
+/// Those that are asked for.
+std::vector<CheckOutput> outputs_of(const CheckArguments& options) {
+  std::vector<CheckOutput> outputs;
+  for (const CheckOutput& output : {CheckOutput{"--junit", options.junit, "JUnit file"},
+                                    CheckOutput{"--markdown", options.markdown, "Markdown file"},
+                                    CheckOutput{"--badge", options.badge, "badge"}})
+    if (!output.path.empty())
+      outputs.push_back(output);
+  return outputs;
+}
+
+/// Refuses outputs that would replace an input or each other.
+void require_outputs(const CheckArguments& options) {
+  std::vector<fs::path> taken;
+  for (const CheckOutput& output : outputs_of(options)) {
+    require_no_input(output.option, output.path, {options.archive, options.gates});
+    require_output_folder(output.path, output.what);
+    std::error_code error;  // a device or a pipe takes them all
+    const fs::path path = fs::weakly_canonical(output.path, error);
+    if (fs::exists(path, error) && !fs::is_regular_file(path, error))
+      continue;
+    if (std::find(taken.begin(), taken.end(), path) != taken.end())
+      throw InputError(output.option, fmt::format("{}, which another option writes", output.path),
+                       "a file for each of --junit, --markdown and --badge");
+    taken.push_back(path);
+  }
+}
 
 /// The gates on these findings. The baseline must not be what is written.
 GateFile gates_of(const CheckArguments& options, const std::vector<Finding>& findings) {
   GateFile gates = load_gates(options.gates, findings);
-  if (gates.baseline && !options.junit.empty())
-    require_no_input("--junit", options.junit, {gates.baseline->archive.string()});
+  if (gates.baseline)
+    for (const CheckOutput& output : outputs_of(options))
+      require_no_input(output.option, output.path, {gates.baseline->archive.string()});
   return gates;
 }
 
@@ -76,15 +122,20 @@ GateCheck check_suite(const CheckArguments& options, const fs::path& board) {
 }
 
 ExitCode check(const CheckArguments& options) {
-  if (!options.junit.empty()) {
-    require_no_input("--junit", options.junit, {options.archive, options.gates});
-    require_output_folder(options.junit, "JUnit file");
-  }
+  require_outputs(options);
   const std::optional<fs::path> board = find_board(options.archive);
   const GateCheck result = board ? check_suite(options, *board) : check_archive(options);
+  const Document document = gates_document(result, options.archive);
   if (!options.junit.empty())
     write_text(options.junit, gates_junit(result, options.archive));
-  print_result(gates_text(result));
+  if (!options.markdown.empty())
+    write_text(options.markdown, document_markdown(document));
+  if (!options.badge.empty())
+    write_text(options.badge, gates_badge(result));
+  if (options.json)
+    print_result(document_json(document));
+  else
+    print_result(options.quiet ? stopped_text(result) : gates_text(result));
   return result.passed() ? ExitCode::done : ExitCode::comparison_failed;
 }
 
@@ -99,6 +150,10 @@ void add_check(CommandSet& commands) {
   add_path(app, "--gates", options->gates, "Gate file (TOML)")->required();
   add_path(app, "--suite", options->suite, "File of a suite of one's own (default: the shipped one)");
   add_path(app, "--junit", options->junit, "JUnit XML to write");
+  add_path(app, "--markdown", options->markdown, "Summary to write, in Markdown");
+  add_path(app, "--badge", options->badge, "Badge to write, the JSON of an endpoint of shields.io");
+  add_quiet(app, options->quiet, "No text but why the check fails");
+  add_json(app, options->json);
 }
 
 }  // namespace mpm

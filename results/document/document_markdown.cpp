@@ -69,11 +69,17 @@ std::string table_markdown(const Table& table) {
 std::string document_markdown(const Document& document) {
   std::string text;
   for (const Section& section : document.sections)
-    for (const auto& piece : section.content)
+    for (const auto& piece : section.content) {
+      std::string written;
       if (const Table* const table = std::get_if<Table>(&piece))
-        text += table_markdown(*table);
+        written = table_markdown(*table);
       else if (const Paragraph* const paragraph = std::get_if<Paragraph>(&piece))
-        text += "\n" + words_markdown(paragraph->words) + "\n";
+        written = words_markdown(paragraph->words) + "\n";
+      else if (const Sentences* const sentences = std::get_if<Sentences>(&piece))
+        for (const std::string& words : sentences->words)
+          written += "- " + words_markdown(words) + "\n";
+      text += (text.empty() || written.empty() ? "" : "\n") + written;
+    }
   return text;
 }
 

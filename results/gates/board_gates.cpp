@@ -47,9 +47,9 @@ void add_standing(const Leaderboard& board, std::size_t method, std::vector<Find
   };
   add("place", "its place among the methods of the board, at 5 % false alarms",
       standing ? standing->place : kNaN);
-  add("beats", "methods of the board that it is better than beyond chance, on the same loops",
+  add("beats", "number of methods of the board that it beats by more than chance, on the same loops",
       standing ? standing->won() : kNaN);
-  add("loses_to", "methods of the board that it is worse than beyond chance, on the same loops",
+  add("loses_to", "number of methods of the board that beat it by more than chance, on the same loops",
       standing ? standing->lost() : kNaN);
 }
 

@@ -170,7 +170,9 @@ GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Camp
                                {"solver", campaign.info.solver},
                                {"mpmbench_version", campaign.info.mpmbench_version},
                                {"git_sha", campaign.info.git_sha}},
-                .confidence = study.aggregate.confidence};
+                .confidence = study.aggregate.confidence,
+                .created = campaign.info.created,
+                .seconds = campaign.info.seconds};
   // Without these a campaign could pass because the experiments that would have failed a gate are missing.
   run.results = {
       judge_number("self_check", "1: the basis case is healthy; otherwise no number has a meaning",

@@ -9,6 +9,7 @@
 #include "analysis/findings/judgement_changes.hpp"
 #include "analysis/findings/method_rates.hpp"
 #include "analysis/study_files/study_differences.hpp"
+#include "base/non_finite.hpp"
 #include "results/archive/campaign.hpp"
 #include "results/gates/gate_file.hpp"
 
@@ -48,7 +49,9 @@ struct GateCheck {
       {};  ///< gates that every run has, then those of the file, then [baseline]
   std::optional<BaselineComparison> baseline = {};
   InconclusivePolicy inconclusive = InconclusivePolicy::fail;
-  double confidence = 0.0;  ///< of the intervals
+  double confidence = 0.0;   ///< of the intervals
+  std::string created = {};  ///< when it was run, ISO 8601, UTC; empty: not known
+  double seconds = kNaN;     ///< that the run took; NaN: not known
 
   /// Does this one stop the run? A failed one does, an inconclusive one under InconclusivePolicy::fail.
   bool stops(const GateResult& result) const;

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cmath>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -15,13 +18,24 @@ void set_attribute(pugi::xml_node element, const char* name, const std::string& 
   element.append_attribute(name) = plain_text(value).c_str();
 }
 
+/// "0.000" of what is not known.
+std::string seconds_text(double seconds) {
+  return fmt::format("{:.3f}", std::isfinite(seconds) ? seconds : 0.0);
+}
+
+/// "NAME", then "NAME (2)" of the next gate on the same number.
+std::string case_name(const std::vector<GateResult>& results, const GateResult& result) {
+  const auto before = std::count_if(
+      results.data(), &result, [&](const GateResult& other) { return other.gate.name == result.gate.name; });
+  return before == 0 ? result.gate.name : fmt::format("{} ({})", result.gate.name, before + 1);
+}
+
 void add_case(pugi::xml_node suite, const GateCheck& check, const GateResult& result) {
   const std::string sentence = explanation(result, check.confidence);
   pugi::xml_node test_case = suite.append_child("testcase");
   set_attribute(test_case, "classname", check.name);
-  set_attribute(test_case, "name",
-                fmt::format("{} {}{}", result.gate.name, limit_text(result),
-                            result.gate.with_confidence ? " with confidence" : ""));
+  set_attribute(test_case, "name", case_name(check.results, result));
+  set_attribute(test_case, "time", seconds_text(result.gate.name == "experiments" ? check.seconds : 0.0));
   if (check.stops(result)) {
     pugi::xml_node failure = test_case.append_child("failure");
     set_attribute(failure, "message", sentence);
@@ -56,6 +70,9 @@ std::string gates_junit(const GateCheck& check, const std::string& archive) {
   set_attribute(suite, "failures", fmt::format("{}", failures));
   set_attribute(suite, "errors", "0");
   set_attribute(suite, "skipped", fmt::format("{}", skipped));
+  set_attribute(suite, "time", seconds_text(check.seconds));
+  if (!check.created.empty())
+    set_attribute(suite, "timestamp", check.created);
   pugi::xml_node properties = suite.append_child("properties");
   add_property(properties, "archive", archive);
   for (const auto& [name, value] : check.properties)

@@ -1,5 +1,6 @@
 #include "results/gates/gate_sentences.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -91,6 +92,20 @@ std::string explanation(const GateResult& result, double confidence) {
       result.gate.reason.empty() ? "" : fmt::format(" ({})", plain_text(result.gate.reason));
   return fmt::format("{}: {}: {}{}", result.gate.name, to_string(result.outcome),
                      outcome_sentence(result, confidence), reason);
+}
+
+std::string verdict_sentence(const GateCheck& check) {
+  const auto count = [&](GateOutcome outcome) {
+    return std::count_if(check.results.begin(), check.results.end(),
+                         [outcome](const GateResult& result) { return result.outcome == outcome; });
+  };
+  const auto inconclusive = count(GateOutcome::inconclusive);
+  const char* counts_as =
+      check.inconclusive == InconclusivePolicy::fail ? "fails the check" : "is let through";
+  return fmt::format("{}: {} of {} gates pass, {} fail, {} inconclusive{}",
+                     check.passed() ? "PASSED" : "FAILED", count(GateOutcome::pass), check.results.size(),
+                     count(GateOutcome::fail), inconclusive,
+                     inconclusive > 0 ? fmt::format(", which {}", counts_as) : "");
 }
 
 std::string difference_text(const StudyDifference& difference) {

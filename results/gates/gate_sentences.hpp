@@ -20,6 +20,9 @@ std::string margin_text(const GateResult& result);
 /// The outcome in a sentence, with the number, the limit and the reason of the limit.
 std::string explanation(const GateResult& result, double confidence);
 
+/// The check as a whole: "PASSED: 5 of 5 gates pass, 0 fail, 0 inconclusive".
+std::string verdict_sentence(const GateCheck& check);
+
 /// The values of a key that differs: "0.1 -> 0.9"; "not there" where a run does not have it.
 std::string difference_text(const StudyDifference& difference);
 

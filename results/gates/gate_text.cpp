@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -7,29 +5,12 @@
 #include <fmt/ranges.h>
 
 #include "results/document/document_text.hpp"
+#include "results/gates/gate_document.hpp"
 #include "results/gates/gate_report.hpp"
 #include "results/gates/gate_sentences.hpp"
-#include "results/plot/plot_text.hpp"
 
 namespace mpm {
 namespace {
-
-std::string gate_table(const GateCheck& check) {
-  Table table("", {{"gate", Table::Align::left},
-                   {"limit"},
-                   {"judged by"},
-                   {"measured"},
-                   {fmt::format("{:g} % interval", 100.0 * check.confidence)},
-                   {"count"},
-                   {"margin"},
-                   {"outcome", Table::Align::left}});
-  for (const GateResult& result : check.results)
-    table.row({as_label(result.gate.name), limit_text(result),
-               result.gate.with_confidence ? "interval" : "value", measured_text(result),
-               interval_text(result), result.measured.count, margin_text(result),
-               std::string(to_string(result.outcome))});
-  return table_text(table, kUnlimitedWidth);
-}
 
 std::string changes_heading(const BaselineChanges& question) {
   const JudgementChanges& changes = question.changes;
@@ -63,24 +44,11 @@ std::string baseline_text(const BaselineComparison& baseline) {
   return text;
 }
 
-std::string verdict_line(const GateCheck& check) {
-  const auto count = [&](GateOutcome outcome) {
-    return std::count_if(check.results.begin(), check.results.end(),
-                         [outcome](const GateResult& result) { return result.outcome == outcome; });
-  };
-  const auto inconclusive = count(GateOutcome::inconclusive);
-  const char* counts_as =
-      check.inconclusive == InconclusivePolicy::fail ? "fails the check" : "is let through";
-  return fmt::format("\n{}: {} of {} gates pass, {} fail, {} inconclusive{}\n",
-                     check.passed() ? "PASSED" : "FAILED", count(GateOutcome::pass), check.results.size(),
-                     count(GateOutcome::fail), inconclusive,
-                     inconclusive > 0 ? fmt::format(", which {}", counts_as) : "");
-}
-
 }  // namespace
 
 std::string gates_text(const GateCheck& check) {
-  std::string text = (check.title.empty() ? "" : check.title + "\n\n") + gate_table(check);
+  std::string text =
+      (check.title.empty() ? "" : check.title + "\n\n") + table_text(gate_table(check), kUnlimitedWidth);
   std::string reasons;
   for (const GateResult& result : check.results)
     if (result.outcome != GateOutcome::pass)
@@ -89,7 +57,17 @@ std::string gates_text(const GateCheck& check) {
     text += "\n" + reasons;
   if (check.baseline)
     text += baseline_text(*check.baseline);
-  return text + verdict_line(check);
+  return text + "\n" + verdict_sentence(check) + "\n";
+}
+
+std::string stopped_text(const GateCheck& check) {
+  if (check.passed())
+    return "";
+  std::string text;
+  for (const GateResult& result : check.results)
+    if (check.stops(result))
+      text += explanation(result, check.confidence) + "\n";
+  return text + verdict_sentence(check) + "\n";
 }
 
 }  // namespace mpm

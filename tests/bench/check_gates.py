@@ -3,6 +3,7 @@
 usage: check_gates.py MPMBENCH SOURCES
 """
 
+import json
 import pathlib
 import shutil
 import subprocess
@@ -162,6 +163,27 @@ def check_outcomes(check, archive):
     assert failure.get("message") in text, text
 
 
+def check_other_outputs(check, archive):
+    """JSON, Markdown and badge say what the text says, also of a check that fails; --quiet says only why."""
+    gates = check.folder / "gates.toml"
+    markdown, badge = check.folder / "summary.md", check.folder / "badge.json"
+    words = ("check", archive, "--gates", gates, "--markdown", markdown, "--badge", badge)
+    failing = GATES.replace("minimum = 0.5\nreason", "minimum = 0.99\nreason")
+    for text, code, verdict, colour in ((GATES, 0, "PASSED", "brightgreen"), (failing, 1, "FAILED", "red")):
+        gates.write_text(text, encoding="utf-8")
+        report = json.loads(check.run(*words, "--json", code=code).stdout)
+        assert report["passed"] == (code == 0) and len(report["gates"]) == 5 and report["run"]["seed"] == "20150401", report
+        assert [gate["name"] for gate in report["gates"] if gate["stops"]] == ["mpm.source_recognised"] * code, report
+        summary = markdown.read_text(encoding="utf-8")
+        assert f"chapter6: {verdict}: " in summary and "| ud.located |" in summary, summary
+        assert json.loads(badge.read_text(encoding="utf-8"))["color"] == colour
+        said = check.run(*words, "--quiet", code=code).stdout
+        assert (said == "") == (code == 0) and said.count("\n") == 2 * code, said
+    for same in (("--markdown", gates), ("--badge", archive), ("--badge", check.junit)):
+        error = check.run(*words[:4], "--junit", check.junit, *same, code=2).stderr
+        assert f"{same[0]}: found " in error and "allowed: " in error, error
+
+
 def check_shipped(check, archive, sources):
     """Part of the study decides few of its gates, but contradicts none."""
     shipped = (sources / "scenarios/gates/chapter6.toml").read_text(encoding="utf-8")
@@ -235,6 +257,7 @@ def main(program, sources):
         check, sources = Check(program, pathlib.Path(name)), pathlib.Path(sources)
         archive = check.campaign("chapter6", "a.h5")
         check_outcomes(check, archive)
+        check_other_outputs(check, archive)
         check_shipped(check, archive, sources)
         broken = check_broken_indicator(check, sources)
         check_refusals(check, archive)

@@ -20,6 +20,7 @@
 #include "results/document/document_markdown.hpp"
 #include "results/files/csv_text.hpp"
 #include "results/gates/gate_check.hpp"
+#include "results/gates/gate_document.hpp"
 #include "results/gates/gate_report.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/plot_text.hpp"
@@ -187,6 +188,10 @@ TEST_CASE("hostile texts: pages, tables and files of a campaign take them as tex
   check.name = check.title = hostile(first);
   check.baseline = BaselineComparison{
       hostile(first), hostile(first), {{hostile(first), hostile(first), ""}}, {hostile(first)}};
+  const Document gates = gates_document(check, file);
+  CHECK_NOTHROW(nlohmann::json::parse(document_json(gates)));
+  CHECK_NOTHROW(nlohmann::json::parse(gates_badge(check)));
+  check_markdown(document_markdown(gates));
   pugi::xml_document junit;
   REQUIRE(junit.load_string(gates_junit(check, file).c_str()));
   CHECK(junit.select_nodes("//x0").empty());

@@ -3,12 +3,18 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
 
 #include "analysis/study_files/study_file.hpp"
 #include "base/error.hpp"
+#include "results/document/document_json.hpp"
+#include "results/document/document_markdown.hpp"
 #include "results/gates/gate_check.hpp"
+#include "results/gates/gate_document.hpp"
 #include "results/gates/gate_report.hpp"
 #include "tests/analysis/made_up_record.hpp"
 #include "tests/results/made_up_campaign.hpp"
@@ -326,6 +332,82 @@ TEST_CASE("gate report: JUnit has a failure for what stops the campaign and skip
                                Contains("type=\"inconclusive\"") && Contains("&lt;a&amp;b>.h5"));
   CHECK_THAT(junit("inconclusive = \"pass\"\n" + kSure),
              Contains("failures=\"0\" errors=\"0\" skipped=\"1\"") && Contains("<skipped message="));
+}
+
+TEST_CASE("gate report: the names in JUnit outlive their limits, and times add up") {
+  Campaign campaign = good_campaign();
+  campaign.info.created = "2026-11-29T09:55:16Z";
+  campaign.info.seconds = 6.25;
+  const auto names = [&](const std::string& text) {
+    pugi::xml_document document;
+    REQUIRE(document.load_string(gates_junit(check_gates(campaign, gates(campaign, text)), "a.h5").c_str()));
+    const pugi::xml_node suite = document.child("testsuites").child("testsuite");
+    CHECK(suite.attribute("timestamp").value() == campaign.info.created);
+    CHECK(suite.attribute("time").as_double() == 6.25);
+    std::vector<std::string> found;
+    double seconds = 0.0;
+    for (const pugi::xml_node test_case : suite.children("testcase")) {
+      found.emplace_back(test_case.attribute("name").value());
+      seconds += test_case.attribute("time").as_double();
+    }
+    CHECK(seconds == 6.25);
+    return found;
+  };
+  const std::string upper = "[[gate]]\naggregate = \"ud.located\"\nmaximum = 1.0\n";
+  const std::vector<std::string> expected{"self_check", "experiments", "failed", "ud.located",
+                                          "ud.located (2)"};
+  CHECK(names(kLocated + upper) == expected);
+  CHECK(names("[[gate]]\naggregate = \"ud.located\"\nminimum = 0.1\nwith_confidence = true\n" + upper) ==
+        expected);
+}
+
+TEST_CASE("gate report: JSON and Markdown have every gate and every verdict that changed") {
+  const Campaign baseline = good_campaign();
+  Campaign campaign = baseline;
+  mislocate(campaign, ExperimentKind::ud, 20);
+  const GateFile file = gates(campaign, kLocated + "[baseline]\narchive = \"old.h5\"\n");
+  const GateCheck check = check_gates(campaign, file, &baseline);
+  const Document document = gates_document(check, "a.h5");
+  const auto json = nlohmann::json::parse(document_json(document));
+  CHECK(json["passed"] == false);
+  CHECK(json["archive"] == "a.h5");
+  REQUIRE(json["gates"].size() == check.results.size());
+  CHECK(json["gates"][3]["name"] == "ud.located");
+  CHECK(json["gates"][3]["minimum"] == 0.6);
+  CHECK(json["gates"][3]["maximum"].is_null());
+  CHECK(json["gates"][3]["value"] == 0.0);
+  CHECK(json["gates"][3]["outcome"] == "fail");
+  CHECK(json["gates"][3]["stops"] == true);
+  const auto& questions = json["baseline"]["questions"];
+  const auto located = std::find_if(questions.begin(), questions.end(),
+                                    [](const nlohmann::json& each) { return each["name"] == "located"; });
+  REQUIRE(located != questions.end());
+  REQUIRE((*located)["lost"].size() > 5);
+  CHECK((*located)["lost"][0]["index"] == 1);
+  CHECK((*located)["lost"][0]["now"] == "wrong");
+
+  const std::string markdown = document_markdown(document);
+  CHECK_THAT(markdown, Contains(": FAILED: ") && Contains("\n\n| gate | limit |") &&
+                           Contains("| ud.located | \\>= 60.0 % | value | 0.0 % |") &&
+                           Contains("\n\n- ud.located: fail: ") && Contains("| lost | gained |"));
+  CHECK_THAT(stopped_text(check), Contains("ud.located: fail: ") && Contains("\nFAILED: "));
+  CHECK_THAT(document_markdown(gates_document(check_gates(baseline, file, &baseline), "a.h5")),
+             Contains("PASSED: ") && Contains("No verdict changed."));
+  CHECK(stopped_text(check_gates(baseline, file, &baseline)).empty());
+}
+
+TEST_CASE("gate report: a badge is green, yellow or red") {
+  Campaign campaign = good_campaign();
+  const auto badge = [&](const std::string& text) {
+    return nlohmann::json::parse(gates_badge(check_gates(campaign, gates(campaign, text))));
+  };
+  CHECK(badge(kSure)["schemaVersion"] == 1);
+  CHECK(badge(kSure)["message"] == "4 of 4 gates");
+  CHECK(badge(kSure)["color"] == "brightgreen");
+  mislocate(campaign, ExperimentKind::ud, 2);
+  CHECK(badge(kSure)["color"] == "red");
+  CHECK(badge("inconclusive = \"pass\"\n" + kSure)["color"] == "yellow");
+  CHECK(badge("inconclusive = \"pass\"\n" + kSure)["message"] == "3 of 4 gates");
 }
 
 }  // namespace
