@@ -45,7 +45,7 @@ BasisCase basis_of(const Study& study, const QpSolverFactory& factory) {
         fmt::format("measured disturbances, setpoints or limits under which the controller of the "
                     "study does not run on its own model: {}",
                     basis.explanation),
-        "those that the study's limits bear: look at units, operating point (data.scale, "
+        "values within the limits of the study: check units and operating point (data.scale, "
         "data.operating_point) and the limits at the time (data.lower, data.upper)");
   return basis;
 }

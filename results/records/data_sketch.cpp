@@ -100,11 +100,11 @@ struct ColumnLook : SignalLook {
     for (const bool upper : {true, false})
       if (const double share = share_at(upper); share > kMost)
         return fmt::format(
-            "{:.0f} % of its values lie in the {} tenth of what it has had ({} to {}), so the cost "
+            "{:.0f} % of its values lie in the {} tenth of its range in the file ({} to {}), so the cost "
             "seems to be {}",
             100.0 * share, upper ? "upper" : "lower", three_digits(lowest), three_digits(highest),
             upper ? "negative" : "positive");
-    return "it rests at neither end of what it has had in the file, which says nothing of the sign";
+    return "it stays near neither end of its range in the file, so the sign of the cost is unknown";
   }
 
   std::string words() const {
