@@ -3,12 +3,12 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# mpm_packages build|test|perf: the packages that this work needs, one a line; each includes those of `build`.
+# mpm_packages build|test|perf|instruments: the packages that this work needs, one a line; each includes those of `build`.
 mpm_packages() {
   awk -v work="$1" '/^[^#]/ && NF && ($2 == "build" || $2 == work) { print $1 }' "$root/.ci/packages.txt"
 }
 
-# mpm_missing build|test|perf: those of them that are not installed.
+# mpm_missing WORK: those of them that are not installed.
 mpm_missing() {
   local package
   for package in $(mpm_packages "$1"); do
@@ -16,7 +16,7 @@ mpm_missing() {
   done
 }
 
-# mpm_install build|test|perf: installs what is missing and does nothing, not even ask for rights, when all is there.
+# mpm_install WORK: installs what is missing and does nothing, not even ask for rights, when all is there.
 mpm_install() {
   local missing as_root=()
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
@@ -45,8 +45,12 @@ mpm_install() {
   fi
 }
 
-# mpm_build <target> [<preset>]: configures the preset (release when none is named) and builds the target.
+# mpm_build <target> [<preset>]: configures the preset (release when none is named) and builds the target, through
+# ccache where it is installed.
 mpm_build() {
   local preset=${2:-release}
+  if command -v ccache >/dev/null; then
+    local -x CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  fi
   (cd "$root" && cmake --preset "$preset" && cmake --build --preset "$preset" --target "$1")
 }

@@ -3,7 +3,7 @@
 option(MPMBENCH_TESTS "Build the tests" ON)
 option(MPMBENCH_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 option(MPMBENCH_PERF "Build the benchmarks of bench/perf (needs Google Benchmark)" OFF)
-option(MPMBENCH_SANITIZERS "Build with the address and undefined-behaviour sanitizers" OFF)
+set(MPMBENCH_SANITIZERS "" CACHE STRING "Sanitizers to build with: address,undefined or thread")
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
@@ -38,16 +38,16 @@ add_library(mpm_build_flags INTERFACE)
 target_compile_options(mpm_build_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow
   # False alarms of GCC 12 about Eigen's empty matrices and an empty std::optional, at all levels but -O3.
-  -Wno-maybe-uninitialized
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
   # No contraction: the same source gives the same bits with and without FMA hardware.
   -ffp-contract=off
   # What it warns of in a header, local types in a class, is in order in a source, and gcc takes sources for headers here.
-  $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-subobject-linkage>
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>
   $<$<BOOL:${MPMBENCH_WARNINGS_AS_ERRORS}>:-Werror>)
 target_compile_definitions(mpm_build_flags INTERFACE EIGEN_DONT_PARALLELIZE)
 
 if(MPMBENCH_SANITIZERS)
   # Every target, so that no allocation crosses from instrumented into plain code. A report ends the program.
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
-  add_link_options(-fsanitize=address,undefined)
+  add_compile_options(-fsanitize=${MPMBENCH_SANITIZERS} -fno-sanitize-recover=all -fno-omit-frame-pointer -O1)
+  add_link_options(-fsanitize=${MPMBENCH_SANITIZERS})
 endif()

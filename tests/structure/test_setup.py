@@ -10,6 +10,8 @@ ROOT = Path(__file__).parents[2]
 REAL_PROGRAMS = ["awk", "bash", "dirname", "env"]
 INSTALL = "apt-get install -y -q --no-install-recommends -o DPkg::Lock::Timeout=300"
 
+WORKS = ("build", "test", "perf", "instruments")
+
 # Everything is installed but what $MISSING names.
 DPKG_QUERY = 'for package; do :; done\n[[ " $MISSING " != *" $package "* ]] && echo -n installed'
 APT_GET = 'echo "apt-get $*" >> "$LOG"\n[[ " $APT_FAILS " != *" $1 "* ]]'
@@ -94,8 +96,8 @@ class Setup(unittest.TestCase):
     def test_every_line_of_the_list_names_one_package_and_its_work(self):
         lines = (ROOT / ".ci/packages.txt").read_text(encoding="ascii").splitlines()
         entries = [line.split("#")[0].split() for line in lines if line and not line.startswith("#")]
-        self.assertTrue(all(len(entry) == 2 and entry[1] in ("build", "test", "perf") for entry in entries), entries)
-        for work in ("build", "test", "perf"):
+        self.assertTrue(all(len(entry) == 2 and entry[1] in WORKS for entry in entries), entries)
+        for work in WORKS:
             listed, _ = self.call(f"mpm_packages {work}")
             self.assertEqual(listed.stdout.split(), [name for name, kind in entries if kind in ("build", work)])
 

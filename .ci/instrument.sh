@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Builds with an instrument and runs the tests under it. Each takes hours on two cores; none is one of the tests.
+#
+#   .ci/instrument.sh asan [ARGUMENTS OF CTEST]      address and undefined-behaviour sanitizers; a report fails its test
+#   .ci/instrument.sh tsan [ARGUMENTS OF CTEST]      thread sanitizer, by clang with archer, which knows OpenMP
+#   .ci/instrument.sh coverage [ARGUMENTS OF CTEST]  the share of the lines of each room that the tests reach
+#   .ci/instrument.sh fuzz [COUNT] [SEED]            COUNT damaged inputs of each kind (2000) for every reader, under asan
+set -euo pipefail
+# shellcheck source=.ci/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+instrument=${1-}
+case $instrument in
+  asan | fuzz) preset=asan-ubsan ;;
+  tsan | coverage) preset=$instrument ;;
+  *)
+    echo "instrument.sh: found '$instrument'; allowed: asan, tsan, coverage, fuzz" >&2
+    exit 2
+    ;;
+esac
+shift
+
+mpm_install test
+mpm_install instruments
+cd "$root"
+if [[ $instrument == fuzz ]]; then
+  mpm_build fuzz_inputs "$preset"
+  exec "build/$preset/tests/reliability/fuzz_inputs" "$root" "${1:-2000}" "${2:-$(date +%Y%m%d)}"
+fi
+mpm_build all "$preset"
+[[ $instrument != coverage ]] || find "build/$preset" -name '*.gcda' -delete
+
+# Left out: what reads sources, what links a program without the instrument, what preloads a library of its own.
+failed=0
+ctest --preset "$preset" -LE tidy -E 'structure:|installed, moved|reliability: (faults|what cannot be closed)' "$@" || failed=$?
+
+if [[ $instrument == coverage ]]; then
+  gcovr --root . --object-directory "build/$preset" --filter '(base|plants|solvers|scenarios|analysis|results|bench)/' \
+    --exclude-throw-branches -j "$(nproc)" --json-summary "build/$preset/coverage.json"
+  /usr/bin/python3 -B tests/instruments/coverage_by_room.py "build/$preset/coverage.json"
+fi
+exit "$failed"
