@@ -40,7 +40,7 @@ output_of() {
 }
 
 words="$*"
-if (($#)) && [[ $1 != --* ]]; then
+if (($#)) && [[ $1 != --* || $1 == --version || $1 == --help ]]; then
   "$mpmbench" "$@" || hint $? "$(output_of "$@")" "from here: ./run.sh in the place of mpmbench; --resume goes on"
   exit
 fi
