@@ -25,7 +25,8 @@ install(FILES
   "${PROJECT_SOURCE_DIR}/cmake/Dependencies.cmake"
   DESTINATION "${MPMBENCH_INSTALLED_CMAKE}" COMPONENT development)
 
-install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md CODE_OF_CONDUCT.md SECURITY.md LICENSE CITATION.cff
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 
 # Where Debian's Python looks when the prefix is /usr, and what +mpmbench is for Octave.

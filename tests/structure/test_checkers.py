@@ -14,6 +14,7 @@ import check_includes
 import check_link_order
 import check_links
 import check_paths
+import check_quotes
 import check_tidy
 import check_used_names
 
@@ -52,6 +53,23 @@ class CheckerTest(unittest.TestCase):
         self.assertEqual(len(complaints), 1, complaints)
         self.assertTrue(complaints[0].startswith(where), complaints)
         self.assertIn(text, complaints[0])
+
+
+class Quotes(CheckerTest):
+    SOURCE = "int f() {\n  int a = 1;\n  int b = 2;\n  return a + b;\n}\n"
+
+    def page(self, block, of="base/a.cpp"):
+        return {"base/a.cpp": self.SOURCE, "a.md": f"# A\n\n<!-- quoted from {of} -->\n```cpp\n{block}```\n"}
+
+    def test_what_stands_in_the_source(self):
+        self.assert_clean(check_quotes, self.page("int f() {\n  int a = 1;\n...\n  return a + b;\n"))
+        self.assert_clean(check_quotes, self.page("int a = 1;\nint b = 2;\n"))
+
+    def test_what_does_not(self):
+        for block in ("int f() {\n  int b = 2;\n", "return a + b;\n...\nint a = 1;\n", "int a = 2;\n", "...\nint a = 1;\n"):
+            self.assert_one(check_quotes, self.page(block), "a.md:3", "not in base/a.cpp")
+        self.assert_one(check_quotes, self.page("int a = 1;\n", of="base/b.cpp"), "a.md:3", "no file base/b.cpp")
+        self.assert_one(check_quotes, {"a.md": "<!-- quoted from a.cpp -->\n\nNo block.\n"}, "a.md:1", "no block")
 
 
 class Tidy(unittest.TestCase):
