@@ -1,10 +1,12 @@
-"""Runs the jobs of build servers step by step as their servers do: those of this repository, those that users copy
-(examples/ci), and the commands of Containerfile. Packages, clones, builds and containers are stubs; mpmbench is real, with
-few experiments but in the study of the gates. Holds the forms of .github to what they promise, and every shell script to shellcheck.
+"""Runs the jobs of build servers step by step as their servers do: those of this repository and those that users copy
+(examples/ci), and the commands of Containerfile and .ci/instrument.sh. Packages, clones, builds and containers are stubs;
+mpmbench is real, with few experiments but in the study of the gates. Holds the forms of .github to what they promise, and
+every shell script to shellcheck.
 
 usage: check_jobs.py MPMBENCH SOURCES
 """
 
+import json
 import os
 import pathlib
 import re
@@ -53,7 +55,7 @@ class Machine:
         for name, script in STUBS.items():
             executable(self.bin / name, script)
         (self.bin / "python3").symlink_to(sys.executable)
-        for name in ("examples", "scenarios", ".ci"):
+        for name in ("examples", "scenarios", "tests", ".ci"):
             (self.tree / name).symlink_to(sources / name)
         for name, script in (("run.sh", RUN_SH.split("\n", 1)[1]), ("test.sh", 'echo tests >"${1#--output-junit}$2"')):
             executable(self.tree / name, script)
@@ -254,6 +256,41 @@ def check_container(machine):
         (machine.bin / name).unlink()
 
 
+def check_instruments(machine):
+    """.ci/instrument.sh with a preset and tests that are there, and the table of coverage."""
+    presets = json.loads((machine.sources / "CMakePresets.json").read_text())
+    summary = {"files": [{"filename": name, "line_covered": covered, "line_total": lines}
+                         for name, covered, lines in (("base/a.cpp", 1, 4), ("base/b.hpp", 2, 2), ("bench/c/d.cpp", 0, 6))]}
+    (machine.folder / "summary.json").write_text(json.dumps(summary))
+    executable(machine.bin / "dpkg-query", "printf installed")
+    executable(machine.bin / "cmake", 'echo "cmake $*" >>"$CALLS"')
+    executable(machine.bin / "ctest", 'echo "ctest $*" >>"$CALLS"\nexit "${TESTS_FAIL:-0}"')
+    executable(machine.bin / "gcovr", f'while [ "$1" != --json-summary ]; do shift; done; cp {machine.folder}/summary.json "$2"')
+    (machine.tree / "build/coverage").mkdir(parents=True)
+    (machine.tree / "build/asan-ubsan/tests/reliability").mkdir(parents=True)
+    executable(machine.tree / "build/asan-ubsan/tests/reliability/fuzz_inputs", 'echo "fuzz_inputs $*" >>"$CALLS"')
+
+    def run(words, code=0, **environment):
+        machine.calls.unlink(missing_ok=True)
+        result = machine.run(["bash", "-c"], f".ci/instrument.sh {words}", environment, machine.tree)
+        assert result.returncode == code, (words, result)
+        return result.stdout, machine.calls.read_text() if machine.calls.exists() else result.stderr
+
+    for word in ("asan", "tsan", "coverage"):
+        table, calls = run(f"{word} -R board")
+        preset = re.search(r"ctest --preset (\S+) .* -R board$", calls, re.MULTILINE)[1]
+        for kind in ("configurePresets", "buildPresets", "testPresets"):
+            assert preset in [each["name"] for each in presets[kind]], (word, kind)
+        run(word, code=8, TESTS_FAIL="8")
+    table, _ = run("coverage")
+    assert table.splitlines()[-3:] == ["| `base` | 6 | 50.0 |", "| `bench` | 6 | 0.0 |", "| all | 12 | 25.0 |"], table
+    assert re.search(r"fuzz_inputs \S+ 30 7$", run("fuzz 30 7")[1], re.MULTILINE)
+    assert "found 'valgrind'; allowed: asan, tsan, coverage, fuzz" in run("valgrind", code=2)[1]
+    for name in ("dpkg-query", "cmake", "ctest", "gcovr"):
+        (machine.bin / name).unlink()
+    shutil.rmtree(machine.tree / "build")
+
+
 def check_forms(sources):
     """The forms ask for what README.md says belongs to a report."""
     folder = sources / ".github/ISSUE_TEMPLATE"
@@ -291,6 +328,7 @@ def main(program, sources):
         check_own_jobs(machine)
         check_users_jobs(machine)
         check_container(machine)
+        check_instruments(machine)
 
 
 if __name__ == "__main__":
