@@ -1,5 +1,5 @@
-// Faults that a sanitizer must report, and a program with OpenMP on which it must be silent: without archer the
-// thread sanitizer reports races there that are none.
+// Faults that a sanitizer must report, and a program with OpenMP on which it must be silent: without archer
+// the thread sanitizer reports races there that are none.
 //
 //   planted_faults none|address|undefined|thread
 #include <cstddef>

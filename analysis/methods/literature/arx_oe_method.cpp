@@ -73,7 +73,8 @@ OptionKeys keys(ArxOeOptions& options) {
           .otherwise("16 for each coefficient of its models"),
       whole("step", options.step, "from the start of a window to that of the next one")
           .otherwise("a quarter of a window"),
-      share("nu", options.nu, "share of the training samples that a machine may leave outside of its boundary"),
+      share("nu", options.nu,
+            "share of the training samples that a machine may leave outside of its boundary"),
       share("share", options.share,
             "a CV is flagged when more than this share of the windows of the record lie outside")};
 }
