@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "gnuplot-nox, tzdata") # figures; time 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS libopenblas0-serial)
 
 # The headers and libraries that Dependencies.cmake looks for, from the one list of packages.
-file(STRINGS .ci/packages.txt packages REGEX "^[a-z].* build")
+file(STRINGS .ci/packages.txt packages REGEX "^[a-z0-9.+-]+ +build")
 list(TRANSFORM packages REPLACE " .*" "")
 list(JOIN packages ", " packages)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmpmbench-dev)
