@@ -92,22 +92,56 @@ OptionKeys experiments_keys(ExperimentCounts& counts) {
 }
 
 /// Smallest dead time of the channels that a mismatch can change.
-double shortest_dead_time(const PlantModel& plant) {
+double shortest_dead_time(const Study& study) {
   double shortest = kInfinity;
-  for (Eigen::Index row = 0; row < plant.G.rows(); ++row) {
-    for (std::size_t mv = 0; mv < plant.mvs.size(); ++mv) {
-      const TransferFunction& channel = plant.G(row, static_cast<Eigen::Index>(mv));
-      if (!channel.is_zero()) {
-        shortest = std::min(shortest, channel.dead_time());
-      }
-    }
-  }
+  for (const auto& [cv, mv] : mismatch_channels(study))
+    shortest = std::min(shortest, study.plant.G(cv, mv).dead_time());
   return shortest;
 }
 
+/// "level/hot"
+std::string channel_text(const Study& study, const ChannelPlace& place) {
+  return fmt::format("{}/{}", study.plant.cvs[static_cast<std::size_t>(place.first)].name,
+                     study.plant.mvs[static_cast<std::size_t>(place.second)].name);
+}
+
+OptionKey mismatch_channels_key(Study& study) {
+  const auto read = [&study](const TomlTable& table, const std::string& key) {
+    if (study.nonlinear)
+      table.refuse(key, "channels of a plant that is not simulated by its linear model", "plant_parameter");
+    const std::vector<ChannelPlace> channels = mv_channels(study);
+    std::vector<std::string> names;
+    for (const ChannelPlace& place : channels)
+      names.push_back(channel_text(study, place));
+    for (const std::size_t place : read_some_of(table, key, names))
+      study.mismatch.channels.push_back(channels[place]);
+    std::sort(study.mismatch.channels.begin(), study.mismatch.channels.end());
+  };
+  return key::option("channels", "list of texts",
+                     "channels that mismatches change, whatever their extent, as `CV/MV`: `[\"y1/u1\"]`")
+      .otherwise("every channel from an MV")
+      .allow("channels of the model, none twice; not for a nonlinear plant")
+      .read(read);
+}
+
+/// With both faults the disturbance is on the CV of the mismatch, which must be one of these.
+void check_disturbed_cvs(const TomlTable& table, Study& study) {
+  std::vector<Eigen::Index>& cvs = study.disturbance.cvs;
+  std::sort(cvs.begin(), cvs.end());
+  if (cvs.empty() || study.nonlinear || study.experiments.mpm_ud == 0)
+    return;
+  for (const ChannelPlace& place : mismatch_channels(study))
+    if (!std::binary_search(cvs.begin(), cvs.end(), place.first))
+      table.refuse("cvs",
+                   fmt::format("no '{}', on which `mpm_ud` experiments have a mismatch and its disturbance",
+                               study.plant.cvs[static_cast<std::size_t>(place.first)].name),
+                   "every CV of mismatch.channels, or mpm_ud = 0");
+}
+
 /// In each channel some draw must leave a dead time >= 0, since draws are confined to those that do.
-void refuse_impossible_shift(const TomlTable& mismatch, const Distribution& shift, const PlantModel& plant) {
-  const double lowest = -shortest_dead_time(plant);
+void refuse_impossible_shift(const TomlTable& mismatch, const Study& study) {
+  const Distribution& shift = study.mismatch.dead_time_shift;
+  const double lowest = -shortest_dead_time(study);
   const bool constant = shift.kind() == Distribution::Kind::constant;
   if (constant ? shift.maximum() < lowest : shift.maximum() <= lowest) {
     mismatch.refuse("dead_time_shift", fmt::format("draws of at most {}", shift.maximum()),
@@ -121,41 +155,39 @@ void refuse_long_channels(const TomlTable& mismatch, const Study& study) {
   const MismatchRanges& ranges = study.mismatch;
   if (study.nonlinear || study.experiments.mpm + study.experiments.mpm_ud == 0)
     return;
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv) {
-      const TransferFunction& channel = study.plant.G(cv, mv);
-      LongestDraws longest;
-      const auto check = [&](const char* key, const Distribution& draws) {
-        refuse_long_draws(mismatch, key, draws, channel,
-                          fmt::format("{}/{}", study.plant.cvs[static_cast<std::size_t>(cv)].name,
-                                      study.plant.mvs[static_cast<std::size_t>(mv)].name),
-                          longest, study.controller.sample_time);
-      };
-      longest.dead_time_shift = largest_draw(ranges.dead_time_shift);
-      check("dead_time_shift", ranges.dead_time_shift);
-      longest.time_factor = largest_draw(ranges.time_constant_factor);
-      check("time_constant_factor", ranges.time_constant_factor);
-      // A further lag comes alone.
-      for (const auto& [key, parameter, draws] :
-           {std::tuple("second_order", MismatchParameter::second_order, &ranges.second_order),
-            {"inverse_response", MismatchParameter::inverse_response, &ranges.inverse_response}}) {
-        const auto place =
-            std::find(kRandomMismatchParameters.begin(), kRandomMismatchParameters.end(), parameter) -
-            kRandomMismatchParameters.begin();
-        if (ranges.parameter_weight[static_cast<std::size_t>(place)] == 0.0)
-          continue;
-        longest = {.lag = largest_draw(*draws) *
-                          std::max(std::abs(channel.residence_time()), study.controller.sample_time)};
-        check(key, *draws);
-      }
+  for (const ChannelPlace& place : mismatch_channels(study)) {
+    const TransferFunction& channel = study.plant.G(place.first, place.second);
+    LongestDraws longest;
+    const auto check = [&](const char* key, const Distribution& draws) {
+      refuse_long_draws(mismatch, key, draws, channel, channel_text(study, place), longest,
+                        study.controller.sample_time);
+    };
+    longest.dead_time_shift = largest_draw(ranges.dead_time_shift);
+    check("dead_time_shift", ranges.dead_time_shift);
+    longest.time_factor = largest_draw(ranges.time_constant_factor);
+    check("time_constant_factor", ranges.time_constant_factor);
+    // A further lag comes alone.
+    for (const auto& [key, parameter, draws] :
+         {std::tuple("second_order", MismatchParameter::second_order, &ranges.second_order),
+          {"inverse_response", MismatchParameter::inverse_response, &ranges.inverse_response}}) {
+      const auto drawn =
+          std::find(kRandomMismatchParameters.begin(), kRandomMismatchParameters.end(), parameter) -
+          kRandomMismatchParameters.begin();
+      if (ranges.parameter_weight[static_cast<std::size_t>(drawn)] == 0.0)
+        continue;
+      longest = {.lag = largest_draw(*draws) *
+                        std::max(std::abs(channel.residence_time()), study.controller.sample_time)};
+      check(key, *draws);
     }
+  }
 }
 
 OptionKeys mismatch_ranges_keys(Study& study) {
   MismatchRanges& ranges = study.mismatch;
   constexpr std::size_t kClassic = 3;  // those of table 6.4, without which the others do not stand
   const NumberRule positive = NumberRule::positive();
-  return {weights_key("parameter_weights", kRandomMismatchParameters, kClassic, ranges.parameter_weight,
+  return {mismatch_channels_key(study),
+          weights_key("parameter_weights", kRandomMismatchParameters, kClassic, ranges.parameter_weight,
                       {"relative frequency; they need not sum to 1", "the same", "the same",
                        "of a further lag", "of a right-half-plane zero", "of a gain with the other sign"},
                       "relative frequencies of the changed parameters")
@@ -178,9 +210,7 @@ OptionKeys mismatch_ranges_keys(Study& study) {
           key::distribution("dead_time_shift", ranges.dead_time_shift, NumberRule::finite(),
                             "added to the dead time; draws are confined to those that leave it >= 0", "time")
               .allow("draws that can be above minus the shortest dead time"),
-          key::check([&study](const TomlTable& table) {
-            refuse_impossible_shift(table, study.mismatch.dead_time_shift, study.plant);
-          }),
+          key::check([&study](const TomlTable& table) { refuse_impossible_shift(table, study); }),
           key::distribution("second_order", ranges.second_order, positive,
                             "time constant T of a further lag, G / (T s + 1), over the residence time of the "
                             "channel (of a first-order one its time constant; at least a sample)",
@@ -192,9 +222,17 @@ OptionKeys mismatch_ranges_keys(Study& study) {
           plant_parameters_key(ranges.plant_parameters, study)};
 }
 
-OptionKeys disturbance_ranges_keys(DisturbanceRanges& ranges) {
+OptionKeys disturbance_ranges_keys(Study& study) {
+  DisturbanceRanges& ranges = study.disturbance;
   const NumberRule positive = NumberRule::positive();
   return {
+      key::some_of(
+          "cvs", ranges.cvs, [&study] { return variable_names(study.plant.cvs); },
+          "CVs on which disturbances act; one on an MV (`place_weights`) reaches what the MV does")
+          .otherwise("every CV")
+          .allow(
+              "names of CVs, none twice; with `mpm_ud` experiments those of `mismatch.channels` among them"),
+      key::check([&study](const TomlTable& table) { check_disturbed_cvs(table, study); }),
       key::distribution("gain", ranges.gain, positive,
                         "static gain; its sign would change nothing, v being symmetric", "CV"),
       key::distribution("time_constant", ranges.time_constant, positive, "time constant", "time"),
@@ -335,7 +373,7 @@ OptionKeys fault_keys(Study& study) {
               "mismatch", [&study] { return mismatch_ranges_keys(study); },
               "ranges of the random model-plant mismatches"),
           key::table(
-              "disturbance", [&study] { return disturbance_ranges_keys(study.disturbance); },
+              "disturbance", [&study] { return disturbance_ranges_keys(study); },
               "ranges of the random unmeasured disturbances"),
           random_table(
               "tuning", [&study] { return tuning_keys(study); }, "ranges of the random bad tunings"),

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -44,8 +45,12 @@ struct PlantParameterRange {
   bool operator==(const PlantParameterRange&) const = default;
 };
 
+/// A CV and the MV from which a channel leads to it.
+using ChannelPlace = std::pair<Eigen::Index, Eigen::Index>;
+
 /// Ranges of the random mismatches (table 6.4). Channels are pairs of a CV and an MV with non-zero gain.
 struct MismatchRanges {
+  std::vector<ChannelPlace> channels = {};  ///< that mismatches of every extent change; empty: all
   /// Relative frequency of each of kRandomMismatchParameters; they need not sum to one.
   std::array<double, kRandomMismatchParameters.size()> parameter_weight{1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
   /// Relative frequency of each of kMismatchExtents.
@@ -95,6 +100,7 @@ inline constexpr auto kDisturbancePlaces = enumerators<DisturbancePlace>();
 /// normal with v_standard_deviation; a signal of another shape has the size at which y_d has the variance
 /// that white v gives it, so that the shape alone differs (docs/methods.md).
 struct DisturbanceRanges {
+  std::vector<Eigen::Index> cvs = {};  ///< on which disturbances act that act on CVs; empty: all
   Distribution gain = Distribution::uniform(0.1, 3.0);
   Distribution time_constant = Distribution::uniform(30.0, 300.0);
   double v_standard_deviation = 1.0;               ///< of the white normal sequence, held over a sample

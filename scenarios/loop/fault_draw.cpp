@@ -24,20 +24,14 @@ double either_sign(double value, RandomStream& stream) {
   return stream.uniform() < 0.5 ? -value : value;
 }
 
-// --- Mismatches ---
-
-using ChannelPlace = std::pair<Eigen::Index, Eigen::Index>;
-
-std::vector<ChannelPlace> mv_channels(const Study& study) {
-  std::vector<ChannelPlace> channels;
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
-      if (!study.plant.G(cv, mv).is_zero())
-        channels.emplace_back(cv, mv);
-  if (channels.empty())
-    throw InputError("plant", "no channel from an MV to a CV", "at least one");
-  return channels;
+/// 0 to count - 1.
+std::vector<Eigen::Index> every_place(Eigen::Index count) {
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(count));
+  std::iota(places.begin(), places.end(), Eigen::Index{0});
+  return places;
 }
+
+// --- Mismatches ---
 
 // A dead time cannot become negative: a bounded distribution is shrunk onto what is possible, so that the
 // draw still gives a mismatch; an unbounded one is cut off.
@@ -105,20 +99,20 @@ std::vector<Mismatch> reaching(const Study& study, MismatchExtent extent, const 
           mismatches.push_back(mismatch_of(study, {first.cv, first.input}, parameter, stream));
       return mismatches;
     case MismatchExtent::cv:
-      for (const ChannelPlace& place : mv_channels(study))
+      for (const ChannelPlace& place : mismatch_channels(study))
         if (place.first == first.cv)
           mismatches.push_back(
               place.second == first.input ? first : mismatch_of(study, place, first.parameter, stream));
       return mismatches;
     case MismatchExtent::plant:
-      for (const ChannelPlace& place : mv_channels(study))
+      for (const ChannelPlace& place : mismatch_channels(study))
         mismatches.push_back(place == ChannelPlace{first.cv, first.input}
                                  ? first
                                  : mismatch_of(study, place, first.parameter, stream));
       return mismatches;
     case MismatchExtent::mv: {
       const double factor = study.mismatch.gain_factor.sample(stream);
-      for (const auto& [cv, mv] : mv_channels(study))
+      for (const auto& [cv, mv] : mismatch_channels(study))
         if (mv == first.input)
           mismatches.push_back({cv, mv, MismatchParameter::gain, factor});
       return mismatches;
@@ -187,10 +181,8 @@ DisturbanceSignal of_equal_effect(const Study& study, std::int64_t index, const 
 
 /// Onto the other CVs of a disturbance of several.
 void reach_further(const Study& study, ExperimentDraw& draw, RandomStream& stream) {
-  std::vector<Eigen::Index> others;
-  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    if (cv != draw.disturbances.front().cv)
-      others.push_back(cv);
+  std::vector<Eigen::Index> others = disturbance_cvs(study);
+  std::erase(others, draw.disturbances.front().cv);
   const auto most = std::min<std::uint64_t>(kMostCvs - 1, others.size());
   for (std::uint64_t more = most == 0 ? 0 : 1 + stream.below(most); more > 0; --more) {
     const auto place = others.begin() + static_cast<std::ptrdiff_t>(stream.below(others.size()));
@@ -261,9 +253,8 @@ double width(const Limits& limits, Eigen::Index variable) {
 std::vector<Eigen::Index> variables_of(const Study& study, OtherFaultKind kind) {
   if (sort_of(kind) == VariableSort::md)
     return moving_mds(study);
-  std::vector<Eigen::Index> variables(
-      static_cast<std::size_t>(sort_of(kind) == VariableSort::cv ? study.cv_count() : study.mv_count()));
-  std::iota(variables.begin(), variables.end(), Eigen::Index{0});
+  std::vector<Eigen::Index> variables =
+      every_place(sort_of(kind) == VariableSort::cv ? study.cv_count() : study.mv_count());
   if (kind == OtherFaultKind::limit)
     std::erase_if(variables, [&](Eigen::Index cv) { return !is_limited(study, cv); });
   return variables;
@@ -303,6 +294,25 @@ OtherFault other_fault(const Study& study, OtherFaultKind kind, Eigen::Index var
 
 }  // namespace
 
+std::vector<ChannelPlace> mv_channels(const Study& study) {
+  std::vector<ChannelPlace> channels;
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
+    for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
+      if (!study.plant.G(cv, mv).is_zero())
+        channels.emplace_back(cv, mv);
+  if (channels.empty())
+    throw InputError("plant", "no channel from an MV to a CV", "at least one");
+  return channels;
+}
+
+std::vector<ChannelPlace> mismatch_channels(const Study& study) {
+  return study.mismatch.channels.empty() ? mv_channels(study) : study.mismatch.channels;
+}
+
+std::vector<Eigen::Index> disturbance_cvs(const Study& study) {
+  return study.disturbance.cvs.empty() ? every_place(study.cv_count()) : study.disturbance.cvs;
+}
+
 double nominal_value(const Study& study, std::string_view parameter) {
   const std::vector<NonlinearModel::Parameter>& parameters = study.nonlinear->model.parameters;
   const auto place = std::find_if(parameters.begin(), parameters.end(),
@@ -331,7 +341,7 @@ void draw_mismatch(const Study& study, ExperimentDraw& draw) {
     draw_plant_parameter(study, draw, stream);
     return;
   }
-  const ChannelPlace channel = draw_from(mv_channels(study), stream);
+  const ChannelPlace channel = draw_from(mismatch_channels(study), stream);
   const auto parameter = kRandomMismatchParameters[draw_place(study.mismatch.parameter_weight, stream)];
   const Mismatch first = mismatch_of(study, channel, parameter, stream);
   RandomStream further = experiment_stream(study, draw.index, StreamId::mismatch_extent);
@@ -341,7 +351,7 @@ void draw_mismatch(const Study& study, ExperimentDraw& draw) {
 
 void draw_disturbance(const Study& study, ExperimentDraw& draw) {
   RandomStream stream = experiment_stream(study, draw.index, StreamId::disturbance_draw);
-  const auto cv = static_cast<Eigen::Index>(stream.below(static_cast<std::uint64_t>(study.cv_count())));
+  const Eigen::Index cv = draw_from(disturbance_cvs(study), stream);
   const double gain = study.disturbance.gain.sample(stream);
   const double time_constant = study.disturbance.time_constant.sample(stream);
   draw.disturbances = {{draw.mismatches.empty() ? cv : draw.mismatches.front().cv, gain, time_constant}};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/random/random_stream.hpp"
@@ -16,6 +17,13 @@ namespace mpm {
 
 /// A place drawn with these relative frequencies, one value of the stream.
 std::size_t draw_place(std::span<const double> weights, RandomStream& stream);
+
+/// The channels from MVs to CVs, row by row. Errors: InputError where there is none.
+std::vector<ChannelPlace> mv_channels(const Study& study);
+/// Those that random mismatches of the study change.
+std::vector<ChannelPlace> mismatch_channels(const Study& study);
+/// The CVs on which random disturbances of the study act.
+std::vector<Eigen::Index> disturbance_cvs(const Study& study);
 
 /// The mismatches, or the changed parameters of a nonlinear plant with the CVs that they affect.
 void draw_mismatch(const Study& study, ExperimentDraw& draw);

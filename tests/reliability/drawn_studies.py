@@ -23,7 +23,7 @@ COMPOSED = {"": ("study", "plant", "controller", "simulation", "record", "experi
             "sensitivity": ("samples", "step_size", "active_cvs", "fixed_mvs"),
             "s0_perturbation": ("multipliers", "cvs", "fixed_mvs", "fixed_active_cvs"),
             "diagnosis": ("windows",), "monitoring": ("window", "stride"), "calibration": ("seed",),
-            "mismatch": ("plant_parameter", "dead_time_shift"), "world": ("plant_parameter",), "onset": ("sample", "growth"),
+            "mismatch": ("channels", "plant_parameter", "dead_time_shift"), "disturbance": ("cvs",), "world": ("plant_parameter",), "onset": ("sample", "growth"),
             "record.missing": ("share",), "assessment.badwe2009": ("min_lag",), "assessment.badwe2010": ("smallest_order",),
             "controller": ("control_horizon", "move_blocks", "mv", "cv", "md", "program"), "simulation.md_noise": ("standard_deviation",)}
 # Of these every key is composed here, or belongs to another trial: FMUs, records of a plant, programs as controllers.
@@ -411,7 +411,10 @@ class Study:
     def mismatch(self, p):
         shortest = min(channel.get("dead_time", 0.0) for channel in self.channels if channel["input"] in self.mvs)
         shift = self.chance.uniform(0.1, 4) * self.Ts
-        return self.fill("mismatch", p, dead_time_shift={"uniform": [-0.5 * shortest - 0.1 * shift, shift]},
+        places = [f"{channel['cv']}/{channel['input']}" for channel in self.channels if channel["input"] in self.mvs]
+        self.changed = self.chance.sample(places, self.chance.randint(1, len(places))) if self.any(0.2) else places
+        named = {"channels": self.changed} if self.changed is not places and not self.is_program else {}
+        return self.fill("mismatch", p, **named, dead_time_shift={"uniform": [-0.5 * shortest - 0.1 * shift, shift]},
                          parameter_weights=self.drawer.draws.weights(self.tables["mismatch.parameter_weights"]))
 
     def parameter(self, affected=False):
@@ -422,6 +425,9 @@ class Study:
         if scenarios:
             return {"v_standard_deviation": self.chance.uniform(0.1, 2)}
         given = {"gain": {"uniform": [0.05 * self.size["CV"], self.size["CV"]]}} if self.any(0.8) else {}
+        if self.any(0.2):  # where both are, the CVs of the mismatches are among them
+            given["cvs"] = sorted({place.split("/")[0] for place in self.changed} |
+                                  set(self.chance.sample(self.cvs, self.chance.randint(1, len(self.cvs)))))
         return self.fill("disturbance", p, **given)
 
     def onset(self):

@@ -174,7 +174,8 @@ std::vector<DisturbancePrior> disturbances_of(const Study& study, FaultPriors pr
 bool draws_one_fault(const Study& study) {
   const auto& extents = study.mismatch.extent_weight;
   const auto& places = study.disturbance.place_weight;
-  return std::all_of(extents.begin() + 1, extents.end(), [](double weight) { return weight == 0.0; }) &&
+  return study.mismatch.channels.empty() && study.disturbance.cvs.empty() &&
+         std::all_of(extents.begin() + 1, extents.end(), [](double weight) { return weight == 0.0; }) &&
          std::all_of(places.begin() + 1, places.end(), [](double weight) { return weight == 0.0; });
 }
 

@@ -92,8 +92,9 @@ std::string random_study_text() {
       "[record]\nquantisation = 0.5\ncompression = 2\noutliers = {share = 0.01, size = {constant = 7}}\n"
       "candidates = {count = 3, share = 0.4}\n"
       "missing = {share = 0.1, length = 4, fill = 'hold'}\n"
-      "[disturbance]\nimpact = {uniform = [0.5, 2]}\nsignal_weights = {sine = 1}\n"
-      "[mismatch]\nimpact = {log_uniform = [0.5, 2]}\nparameter_weights = {gain = 1, time_constant = 0, "
+      "[disturbance]\ncvs = ['heat', 'level']\nimpact = {uniform = [0.5, 2]}\nsignal_weights = {sine = 1}\n"
+      "[mismatch]\nchannels = ['heat/cold']\nimpact = {log_uniform = [0.5, 2]}\nparameter_weights = {gain = "
+      "1, time_constant = 0, "
       "dead_time = 0.1}\n"
       "dead_time_shift = {normal = [0.1, 0.5]}\ngain_factor = {constant = 0.7}\n"
       "[tuning]\nparameter_weights = {move_suppression = 1, target_weight = 2, slack_weight = 3, "
@@ -373,6 +374,7 @@ TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolv
   const Keys without_value{{"sensitivity", "active_cvs"}, {"sensitivity", "fixed_mvs"},
                            {"mismatch", "impact"},        {"mismatch", "plant_parameter"},
                            {"disturbance", "impact"},     {"other", "impact"},
+                           {"mismatch", "channels"},      {"disturbance", "cvs"},
                            {"assessment", "washout"},     {"assessment", "arx-oe"}};
   for (const char* name : {"experiments",
                            "mismatch",

@@ -282,6 +282,17 @@ TEST_CASE("faults beyond one parameter and white noise are checked", "[study_fil
   check_refusals({
       {"", "[mismatch]\nextent_weights = {parameter = 0}\n", "extent_weights",
        "mismatch.extent_weights: found weights that are all 0; allowed: at least one > 0"},
+      {"", "[mismatch]\nchannels = [\"level/heat\"]\n", "channels",
+       "mismatch.channels: found 'level/heat'; allowed: a list of one or more of level/hot, heat/cold"},
+      {"", "[mismatch]\nchannels = []\n", "channels",
+       "mismatch.channels: found an empty list; allowed: a list of one or more of level/hot, heat/cold"},
+      {"", "[mismatch]\nchannels = [\"heat/cold\", \"heat/cold\"]\n", "channels",
+       "mismatch.channels: found 'heat/cold' twice; allowed: every name once"},
+      {"", "[disturbance]\ncvs = [\"hot\"]\n", "cvs",
+       "disturbance.cvs: found 'hot'; allowed: a list of one or more of level, heat"},
+      {"", "[disturbance]\ncvs = [\"level\"]\n", "cvs",
+       "disturbance.cvs: found no 'heat', on which `mpm_ud` experiments have a mismatch and its disturbance; "
+       "allowed: every CV of mismatch.channels, or mpm_ud = 0"},
       {"", "[mismatch]\nplant_parameter = [{name = \"a\"}]\n", "plant_parameter",
        "mismatch.plant_parameter: found parameters of a plant that is simulated by its linear model; "
        "allowed: "

@@ -4,15 +4,19 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <string>
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
+#include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/experiment_draw.hpp"
+#include "scenarios/loop/fault_draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/scenarios/study_texts.hpp"
 #include "tests/solvers/active_set_factory.hpp"
@@ -234,6 +238,68 @@ TEST_CASE("faults that a study does not ask for leave its draws as they were") {
     CHECK(plain.disturbances[0].gain == rich.disturbances[0].gain);
     CHECK(plain.disturbances[0].cv == rich.disturbances[0].cv);
   }
+}
+
+/// Chapter 6 with faults on these channels and CVs, as lists of a study file.
+Study confined(const std::string& channels, const std::string& cvs) {
+  return changed_study(find_study("chapter6"), {{"mismatch.channels", channels}, {"disturbance.cvs", cvs}},
+                       "--set");
+}
+
+TEST_CASE("faults stay on the channels and CVs that a study names") {
+  const Study all = find_study("chapter6"), one = confined("['y1/u1']", "['y1']");
+  int mismatches = 0, disturbances = 0;
+  for (std::int64_t i = 0; i < 60; ++i) {
+    const ExperimentDraw draw = draw_experiment(one, i), before = draw_experiment(all, i);
+    CHECK(draw.kind == before.kind);
+    for (const Mismatch& mismatch : draw.mismatches) {
+      CHECK((mismatch.cv == 0 && mismatch.input == 0));
+      CHECK(mismatch.parameter == before.mismatches.front().parameter);  // the other draws are as they were
+      ++mismatches;
+    }
+    for (const Disturbance& disturbance : draw.disturbances) {
+      CHECK(disturbance.cv == 0);
+      CHECK(disturbance.gain == before.disturbances.front().gain);
+      ++disturbances;
+    }
+  }
+  CHECK(mismatches > 20);
+  CHECK(disturbances > 20);
+}
+
+TEST_CASE("to name every channel and every CV, in any order, is to name none") {
+  const Study all = find_study("chapter6");
+  std::string cvs, channels;
+  for (const auto& [cv, mv] : mv_channels(all))
+    channels.insert(0, fmt::format("'{}/{}', ", all.plant.cvs[static_cast<std::size_t>(cv)].name,
+                                   all.plant.mvs[static_cast<std::size_t>(mv)].name));
+  for (const auto& cv : all.plant.cvs)
+    cvs.insert(0, fmt::format("'{}', ", cv.name));
+  const Study every = confined("[" + channels + "]", "[" + cvs + "]");
+  for (std::int64_t i = 0; i < 60; ++i) {
+    const ExperimentDraw draw = draw_experiment(every, i), before = draw_experiment(all, i);
+    CHECK(draw.mismatches == before.mismatches);
+    REQUIRE(draw.disturbances.size() == before.disturbances.size());
+    for (std::size_t k = 0; k < draw.disturbances.size(); ++k)
+      CHECK((draw.disturbances[k].cv == before.disturbances[k].cv &&
+             draw.disturbances[k].gain == before.disturbances[k].gain));
+  }
+}
+
+TEST_CASE("no extent of a mismatch and no place of a disturbance reaches what the study does not name") {
+  Study study = confined("['y2/u1', 'y1/u1', 'y1/u3']", "['y2', 'y1']");
+  study.mismatch.extent_weight = {0.0, 0.0, 1.0, 1.0, 1.0};
+  study.disturbance.place_weight = {0.0, 0.0, 1.0};
+  std::set<ChannelPlace> changed;
+  for (std::int64_t i = 0; i < 60; ++i) {
+    const ExperimentDraw draw = draw_experiment(study, i);
+    for (const Mismatch& mismatch : draw.mismatches)
+      changed.emplace(mismatch.cv, mismatch.input);
+    CHECK((draw.disturbances.empty() || draw.disturbances.size() == 2));
+    for (const Disturbance& disturbance : draw.disturbances)
+      CHECK(disturbance.cv <= 1);
+  }
+  CHECK(changed == std::set<ChannelPlace>{{0, 0}, {0, 2}, {1, 0}});
 }
 
 TEST_CASE("random parameters of a nonlinear plant: one of the list, with the CVs that it affects") {
