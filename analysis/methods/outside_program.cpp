@@ -19,7 +19,8 @@
 #include "base/error.hpp"
 #include "base/system/foreign_text.hpp"
 #include "base/system/json_entry.hpp"
-#include "base/system/program_talk.hpp"
+#include "base/system/surroundings.hpp"
+#include "base/system/waiting_programs.hpp"
 
 namespace mpm {
 namespace {
@@ -27,11 +28,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kProtocol = 1;
-
-std::unique_ptr<ProgramTalk> talk_with(const MethodProgram& program) {
-  return std::make_unique<ProgramTalk>(fmt::format("method '{}'", program.name), program.command,
-                                       program.time_limit);
-}
 
 /// {"ask": what, what: content}
 Json question(const char* what, Json content) {
@@ -131,7 +127,7 @@ void read_description(const JsonEntry& entry, ProgramDescription& description) {
     read_numbers(*numbers, method);
 }
 
-ProgramDescription description_of(const MethodProgram& program) {
+ProgramDescription description_of(const MethodProgram& program, WaitingPrograms& programs) {
   ProgramDescription description;
   MethodDescription& method = description.method;
   method.name = program.name;
@@ -140,8 +136,11 @@ ProgramDescription description_of(const MethodProgram& program) {
   method.requirements.complete_record = false;
   method.origin = fmt::format("program {}", fmt::join(program.command, " "));
   try {
-    const Json answer = talk_with(program)->ask(question("describe", describe_content(program)));
+    std::unique_ptr<RunningProgram> first = programs.take_new();
+    const Json answer = first->talk.ask(question("describe", describe_content(program)));
     read_description({answer, fmt::format("method '{}', description", program.name)}, description);
+    first->is_new = false;
+    programs.give_back(std::move(first));
   } catch (const ChildFailure& error) {
     throw InputError(fmt::format("method '{}', description", program.name), error.what(),
                      fmt::format("an answer within {} s", program.time_limit));
@@ -153,13 +152,22 @@ ProgramDescription description_of(const MethodProgram& program) {
 class ProgramMethod final : public AssessmentMethod {
  public:
   ProgramMethod(const MethodProgram& program, const ProgramDescription& description,
-                const AssessmentContext& context)
+                std::shared_ptr<WaitingPrograms> programs, const AssessmentContext& context)
       : program_(program),
         method_(description.method),
+        programs_(std::move(programs)),
         plant_(context.study.plant),
-        context_(context_json(context)) {
+        context_(context_json(context)),
+        context_text_(context_.dump()) {
     for (const std::string& name : description.methods)
       told_.push_back({&assessment_method(name), shared_assessor(assessment_method(name), context)});
+  }
+
+  ProgramMethod(const ProgramMethod&) = delete;
+  ProgramMethod& operator=(const ProgramMethod&) = delete;
+  ~ProgramMethod() override {
+    if (running_)
+      programs_->give_back(std::move(running_));
   }
 
   Assessment assess(const AssessedLoop& loop) override {
@@ -167,16 +175,19 @@ class ProgramMethod final : public AssessmentMethod {
     for (Told& each : told_)
       told["answers"][each.method->name] = answer_json(each.assessor->assess(loop), plant_, *each.method);
     Json answer;
-    std::unique_ptr<ProgramTalk> talk = std::move(talk_);
+    std::unique_ptr<RunningProgram> running = std::move(running_);
     try {
-      if (!talk)
-        talk = begun();
-      answer = talk->ask(question("loop", std::move(told)));
+      if (!running)
+        running = begun();
+      answer = running->talk.ask(question("loop", std::move(told)));
     } catch (const ChildFailure& error) {
       throw InputError(fmt::format("method '{}'", program_.name), error.what(),
                        fmt::format("an answer within {} s", program_.time_limit));
+    } catch (const SurroundingsFailure&) {
+      programs_->end_all();
+      throw;
     }
-    talk_ = std::move(talk);
+    running_ = std::move(running);
     return assessment_of(answer, plant_, method_, fmt::format("method '{}'", program_.name));
   }
 
@@ -187,27 +198,50 @@ class ProgramMethod final : public AssessmentMethod {
     std::shared_ptr<Assessor> assessor;
   };
 
-  std::unique_ptr<ProgramTalk> begun() const {
-    std::unique_ptr<ProgramTalk> talk = talk_with(program_);
-    talk->ask(question("describe", describe_content(program_)));
-    talk->ask(question("context", context_));
-    return talk;
+  /// One that has the context. One that waits may bear no second context: then a new one has it.
+  std::unique_ptr<RunningProgram> begun() const {
+    std::unique_ptr<RunningProgram> running = programs_->take(context_text_);
+    if (running->context == context_text_)
+      return running;
+    if (!running->context.empty()) {
+      try {
+        tell_context(*running);
+        return running;
+      } catch (const ChildFailure&) {
+        running = programs_->take_new();
+      } catch (const InputError&) {
+        running = programs_->take_new();
+      }
+    }
+    tell_context(*running);
+    return running;
+  }
+
+  void tell_context(RunningProgram& running) const {
+    if (std::exchange(running.is_new, false))
+      running.talk.ask(question("describe", describe_content(program_)));
+    running.talk.ask(question("context", context_));
+    running.context = context_text_;
   }
 
   const MethodProgram program_;
   const MethodDescription method_;
+  const std::shared_ptr<WaitingPrograms> programs_;
   const PlantModel& plant_;
   const Json context_;
+  const std::string context_text_;
   std::vector<Told> told_;
-  std::unique_ptr<ProgramTalk> talk_;  ///< none before the first loop, and after one that failed
+  std::unique_ptr<RunningProgram> running_;  ///< none before the first loop, and after one that failed
 };
 
 }  // namespace
 
 AssessmentMethodInfo program_method(const MethodProgram& program) {
-  const ProgramDescription description = description_of(program);
-  return {description.method, {}, [program, description](const AssessmentContext& context) {
-            return std::make_unique<ProgramMethod>(program, description, context);
+  auto programs = std::make_shared<WaitingPrograms>(fmt::format("method '{}'", program.name), program.command,
+                                                    program.time_limit);
+  const ProgramDescription description = description_of(program, *programs);
+  return {description.method, {}, [program, description, programs](const AssessmentContext& context) {
+            return std::make_unique<ProgramMethod>(program, description, programs, context);
           }};
 }
 

@@ -5,8 +5,9 @@
 
 namespace mpm {
 
-/// A method that is a program. Each thread or worker process has one child process of its own, which receives
-/// the context and then one loop after another as lines of JSON (docs/bring_your_own.md). If a child ends,
+/// A method that is a program. Each thread or worker process has one child process of its own as long as the
+/// method lives, which receives a context and then one loop after another as lines of JSON, and where the
+/// context changes the new one (docs/bring_your_own.md). If a child ends,
 /// does not answer in time, or answers what cannot be read, the verdict on its loop is `failed`, and the next
 /// loop has a new child; a child that somebody has killed, or cannot be started for want of files or
 /// processes, has no verdict: that leaves assess() as it is (is_of_surroundings()). An answer with the number

@@ -13,7 +13,7 @@
 
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
-#include "base/system/program_talk.hpp"
+#include "base/system/waiting_programs.hpp"
 #include "scenarios/controller/model_json.hpp"
 #include "solvers/mpc.hpp"
 
@@ -56,39 +56,24 @@ void refuse_unknown_keys(const ProgramJson& answer, std::initializer_list<const 
 /// The programs of a study that run, and what they say of themselves.
 class ControllerTalks {
  public:
-  /// A program that runs, and the context that it was told last.
-  struct Running {
-    Running(const std::vector<std::string>& command, double time_limit)
-        : talk(kControllerPlace, command, time_limit) {}
-
-    ProgramTalk talk;
-    std::string context = {};
-  };
-
   ControllerTalks(std::vector<std::string> command, double time_limit)
-      : command_(std::move(command)), time_limit_(time_limit) {}
+      : programs_(kControllerPlace, std::move(command), time_limit) {}
 
-  const std::vector<std::string>& command() const { return command_; }
-  double time_limit() const { return time_limit_; }
+  const std::vector<std::string>& command() const { return programs_.command(); }
+  double time_limit() const { return programs_.time_limit(); }
 
   /// One that waits, or a new one. Throws ChildFailure and InputError.
-  std::unique_ptr<Running> take() {
-    const std::lock_guard lock(mutex_);
-    while (!waiting_.empty()) {
-      std::unique_ptr<Running> running = std::move(waiting_.back());
-      waiting_.pop_back();
-      if (running->talk.is_ours())  // those of the process that forked this one are none of its own
-        return running;
+  std::unique_ptr<RunningProgram> take(const std::string& context) {
+    std::unique_ptr<RunningProgram> running = programs_.take(context);
+    if (std::exchange(running->is_new, false)) {
+      const bool on_model = on_model_of(running->talk.ask({{"call", "describe"}}));
+      const std::lock_guard lock(mutex_);
+      on_model_ = on_model;
     }
-    auto running = std::make_unique<Running>(command_, time_limit_);
-    on_model_ = on_model_of(running->talk.ask({{"call", "describe"}}));
     return running;
   }
 
-  void give_back(std::unique_ptr<Running> running) {
-    const std::lock_guard lock(mutex_);
-    waiting_.push_back(std::move(running));
-  }
+  void give_back(std::unique_ptr<RunningProgram> running) { programs_.give_back(std::move(running)); }
 
   std::optional<bool> on_model() {
     const std::lock_guard lock(mutex_);
@@ -104,10 +89,8 @@ class ControllerTalks {
     return on_model == description.end() || on_model->get<bool>();
   }
 
-  const std::vector<std::string> command_;
-  const double time_limit_;
+  WaitingPrograms programs_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Running>> waiting_;
   std::optional<bool> on_model_;
 };
 
@@ -143,9 +126,9 @@ class ProgramController final : public Controller {
     acting_ = u;
     Eigen::VectorXd input(u.size() + d.size());
     input << u, d;
-    guarded([&](std::unique_ptr<ControllerTalks::Running>& running) {
+    guarded([&](std::unique_ptr<RunningProgram>& running) {
       if (!running)
-        running = talks_->take();
+        running = talks_->take(context_);
       if (running->context != context_) {
         refuse_unknown_keys(asked(running->talk.ask(ProgramJson::parse(context_))), {});
         running->context = context_;
@@ -160,7 +143,7 @@ class ProgramController final : public Controller {
   const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
                           const Eigen::Ref<const Eigen::VectorXd>& d) override {
     move_.status = ControlStatus::ok;
-    guarded([&](const std::unique_ptr<ControllerTalks::Running>& running) {
+    guarded([&](const std::unique_ptr<RunningProgram>& running) {
       if (!running)
         throw InputError("a step of a program that was not reset");
       ProgramJson question{{"call", "step"},
@@ -201,7 +184,7 @@ class ProgramController final : public Controller {
   template <class Work>
   void guarded(Work work) {
     if (failure_.empty()) {
-      std::unique_ptr<ControllerTalks::Running> running = std::move(running_);
+      std::unique_ptr<RunningProgram> running = std::move(running_);
       try {
         work(running);
         running_ = std::move(running);
@@ -246,7 +229,7 @@ class ProgramController final : public Controller {
   const QpSolverFactory factory_;
   const Eigen::Index nu_;
   std::string context_;
-  std::unique_ptr<ControllerTalks::Running> running_;
+  std::unique_ptr<RunningProgram> running_;
   Limits soft_;
   SwitchedOff off_;
   Eigen::VectorXd y_set_, acting_;
@@ -266,7 +249,7 @@ const std::vector<std::string>& ControllerProgram::command() const {
 bool ControllerProgram::runs_on_model() const {
   if (!talks_->on_model())
     try {
-      talks_->give_back(talks_->take());
+      talks_->give_back(talks_->take(""));
     } catch (const ChildFailure& error) {
       throw InputError(fmt::format("{}, description", kControllerPlace), error.what(),
                        fmt::format("an answer within {} s", talks_->time_limit()));

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/system/program_talk.hpp"
+
+namespace mpm {
+
+/// A program that runs.
+struct RunningProgram {
+  RunningProgram(const std::string& place, const std::vector<std::string>& command, double time_limit)
+      : talk(place, command, time_limit) {}
+
+  ProgramTalk talk;
+  bool is_new = true;        ///< nobody has asked it anything
+  std::string context = {};  ///< that it was told last; empty: none
+};
+
+/// The processes of one program that wait to be asked: starting one may take as long as a hundred answers, so
+/// that it outlives whoever asks it and waits for the next one of the same process. All calls may come from
+/// any thread.
+class WaitingPrograms {
+ public:
+  /// As ProgramTalk; nothing is started.
+  WaitingPrograms(std::string place, std::vector<std::string> command, double time_limit);
+
+  const std::vector<std::string>& command() const { return command_; }
+  double time_limit() const { return time_limit_; }
+
+  /// One that waits, which was told this context last if there is such a one, or a new one. Those of the
+  /// process that this one was forked from are none of its own. Errors: as ProgramTalk.
+  std::unique_ptr<RunningProgram> take(const std::string& context);
+  std::unique_ptr<RunningProgram> take_new() const;
+  /// One that is in step: nothing has gone wrong with it.
+  void give_back(std::unique_ptr<RunningProgram> program);
+  /// Ends those that wait: their surroundings have failed.
+  void end_all();
+
+ private:
+  const std::string place_;
+  const std::vector<std::string> command_;
+  const double time_limit_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<RunningProgram>> waiting_;
+};
+
+}  // namespace mpm
