@@ -12,6 +12,7 @@ find_package(date 3.0 REQUIRED) # time stamps and zones of records
 find_package(ICU 72 REQUIRED COMPONENTS i18n uc) # words in their dates: results/records/date_words.cpp
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto) # SHA-256 of archives
 find_package(Threads REQUIRED)
+find_package(ZLIB REQUIRED) # loops in the cache
 find_package(OpenMP 4.5 REQUIRED COMPONENTS CXX) # part of the compiler
 
 find_package(Ceres 2.1 REQUIRED) # analysis/identification/prediction_error_search.cpp

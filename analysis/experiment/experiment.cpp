@@ -265,9 +265,7 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
 }
 
 ExperimentRunner::FinishedLoop ExperimentRunner::finished_again(const ExperimentRecord& record) {
-  return finished(record.draw, record.loop
-                                   ? record.loop->trajectory
-                                   : simulate_experiment(study_of(record.draw), record.draw, factory_));
+  return finished(record.draw, record.loop ? record.loop->trajectory : simulated(record.draw));
 }
 
 AssessedLoop ExperimentRunner::loop_of(const ExperimentRecord& record) {
@@ -275,15 +273,25 @@ AssessedLoop ExperimentRunner::loop_of(const ExperimentRecord& record) {
 }
 
 std::vector<AssessmentRecord> ExperimentRunner::assess(const ExperimentRecord& record) {
+  return assess(record, methods_);
+}
+
+std::vector<AssessmentRecord> ExperimentRunner::assess(const ExperimentRecord& record,
+                                                       const std::vector<std::string>& methods) {
   const FinishedLoop loop = finished_again(record);
   if (loop.status == ExperimentStatus::ok) {
-    std::vector<AssessmentRecord> assessments = assessed(record.draw, loop);
+    std::vector<AssessmentRecord> assessments;
+    if (methods == methods_)
+      assessments = assessed(record.draw, loop);
+    else
+      for (const std::string& method : methods)
+        assessments.push_back(*assessed_by(method, record.draw, loop));
     if (AssessmentRecord* const chain = chain_verdict(assessments); chain && has_loops_alone(record.draw))
       add_dominance(*chain, record.draw, simulate(record.draw.mismatch_alone(), {}),
                     simulate(record.draw.disturbance_alone(), {}));
     return assessments;
   }
-  std::vector<AssessmentRecord> failed = unassessed(panel_.forms());
+  std::vector<AssessmentRecord> failed = unassessed(assessment_forms(study_, methods));
   for (AssessmentRecord& assessment : failed) {
     assessment.status = AssessmentStatus::failed;
     assessment.reason = loop.own ? "its controller has no S0 of its own: " + loop.own->basis.explanation

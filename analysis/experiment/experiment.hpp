@@ -44,6 +44,13 @@ class ExperimentRunner {
   /// What the methods say of an experiment with status ok that was run before: of its loop where it was kept,
   /// otherwise of the loop run again.
   std::vector<AssessmentRecord> assess(const ExperimentRecord& record);
+  /// What these of its methods say, in this order.
+  std::vector<AssessmentRecord> assess(const ExperimentRecord& record,
+                                       const std::vector<std::string>& methods);
+  /// The loop of an experiment, run again.
+  Trajectory simulated(const ExperimentDraw& draw) {
+    return simulate_experiment(study_of(draw), draw, factory_);
+  }
   /// The loop of such an experiment as the methods see it. An experiment whose controller has no S0 of its
   /// own has none: only y_sim.
   AssessedLoop loop_of(const ExperimentRecord& record);

@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/same_members.hpp"
 #include "base/system/surroundings.hpp"
+#include "bench/cache/loop_memory.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/execution/thread_worker.hpp"
 #include "results/archive/loop_rows.hpp"
@@ -31,23 +32,34 @@ void require_options(const RunOptions& options) {
   qp_solver_factory(options.solver);  // refuses one that there is not
 }
 
+/// The options by which experiments are run whose loops are kept in a cache.
+RunOptions with_loops(RunOptions options, bool kept) {
+  options.store = kept ? StorePolicy::all : options.store;
+  return options;
+}
+
 /// What one thread or process works with.
 struct CampaignWorker {
-  CampaignWorker(const CampaignLoops& loops, const BasisCase& basis, const QpSolverFactory& factory)
-      : calibration_run(calibration_options(loops.options())),
-        experiments(loops.study(), loops.study(), basis, loops.options(), factory) {
+  CampaignWorker(const CampaignLoops& loops, const BasisCase& basis, const QpSolverFactory& factory,
+                 bool keeps)
+      : experiment_run(with_loops(loops.options(), keeps)),
+        calibration_run(with_loops(calibration_options(loops.options()), keeps)),
+        experiments(loops.study(), loops.study(), basis, experiment_run, factory) {
     if (loops.count() > loops.experiments())
       calibration.emplace(loops.calibration(), loops.study(), basis, calibration_run, factory);
   }
 
-  ExperimentOutcome run(std::int64_t key) {
-    return key < kCalibrationKeys ? experiments.run(key) : calibration->run(key - kCalibrationKeys);
-  }
+  ExperimentWork& work(std::int64_t key) { return key < kCalibrationKeys ? experiments : *calibration; }
+  ExperimentOutcome run(std::int64_t key) { return work(key).run(key % kCalibrationKeys); }
 
-  RunOptions calibration_run;
+  RunOptions experiment_run, calibration_run;
   ExperimentWork experiments;
   std::optional<ExperimentWork> calibration;
 };
+
+std::optional<KnownLoop> known_in(const LoopMemory* memory, std::int64_t key) {
+  return memory == nullptr ? std::nullopt : memory->find(key);
+}
 
 bool earlier(const AuditedStep& one, const AuditedStep& other) {
   return std::tie(one.experiment, one.step) < std::tie(other.experiment, other.step);
@@ -88,13 +100,6 @@ RunOptions calibration_options(RunOptions options) {
   return options;
 }
 
-bool runs_in_threads(const Study& study, const RunOptions& options) {
-  const bool safe = options.solver == "auto" || options.solver == "active-set";
-  if (options.parallel == Parallel::threads && !safe)
-    throw InputError("parallel", fmt::format("threads for the solver {}", options.solver),
-                     "processes, or one of the solvers auto and active-set");
-  const bool foreign = (study.nonlinear && study.nonlinear->model.foreign) || study.controller_program;
-  return options.parallel == Parallel::by_solver ? safe && !foreign : options.parallel == Parallel::threads;
 }
 
 CampaignLoops::CampaignLoops(Study study, RunOptions options)
@@ -143,33 +148,71 @@ ShardStore CampaignLoops::open(const std::filesystem::path& folder, const ShardS
   return store;
 }
 
-LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& warn) const {
+LoopResult CampaignLoops::kept_result(std::int64_t key, ExperimentOutcome outcome, const LoopMemory* memory,
+                                      bool by_process) const {
+  std::string aside;
+  if (memory != nullptr) {
+    const KnownLoop loop{.record = outcome.record, .by_process = by_process};
+    aside = memory->to_keep(key, loop);
+    outcome.record.loop.reset();
+  }
+  LoopResult result = this->result(key, outcome);
+  result.aside = std::move(aside);
+  return result;
+}
+
+LoopResult CampaignLoops::heard_result(std::int64_t key, KnownLoop known, ExperimentWork& work) const {
+  if (!known.unheard.empty())
+    work.assess(known.record, known.unheard);
+  std::string aside = LoopMemory::to_keep(known);
+  known.record.loop.reset();
+  LoopResult result = this->result(key, {.record = std::move(known.record), .samples = {}, .audited = {}});
+  result.aside = std::move(aside);
+  return result;
+}
+
+LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& warn, LoopMemory* memory) const {
   LoopWork work{.jobs = options_.jobs, .on_warning = warn};
+  if (memory != nullptr)
+    work.on_aside = [memory](std::int64_t key, std::string aside) { memory->take(key, std::move(aside)); };
   const bool in_threads = runs_in_threads(study_, options_);
   const bool fall_back = options_.solver == "auto" && !study_.controller_program;
   if (in_threads)
-    work.thread = [this, &basis, fall_back] {
-      const auto make = [this, &basis](const QpSolverFactory& factory) {
-        return std::make_unique<CampaignWorker>(*this, basis, factory);
+    work.thread = [this, &basis, fall_back, memory] {
+      const auto make = [this, &basis, memory](const QpSolverFactory& factory) {
+        return std::make_unique<CampaignWorker>(*this, basis, factory, memory != nullptr);
       };
-      return [this, fall_back, worker = std::make_shared<ThreadWorker<CampaignWorker>>(make, fall_back)](
-                 std::int64_t key) -> LoopResult {
-        const auto outcome = worker->run([key](CampaignWorker& each) { return each.run(key); });
-        if (!outcome || (fall_back && outcome->record.status == ExperimentStatus::failed))
-          return {.bytes = "", .unfinished = true};
-        LoopResult result = this->result(key, *outcome);
-        result.unfinished = !outcome->samples.empty();
-        return result;
-      };
+      return
+          [this, fall_back, memory, worker = std::make_shared<ThreadWorker<CampaignWorker>>(make, fall_back)](
+              std::int64_t key) -> LoopResult {
+            const LoopResult for_process{.bytes = "", .unfinished = true};
+            const std::optional<LoopResult> done = worker->run([&](CampaignWorker& each) {
+              if (std::optional<KnownLoop> known = known_in(memory, key))
+                return known->by_process && !known->unheard.empty()
+                           ? for_process
+                           : heard_result(key, *std::move(known), each.work(key));
+              ExperimentOutcome outcome = each.run(key);
+              if (fall_back && outcome.record.status == ExperimentStatus::failed)
+                return for_process;
+              const bool unfinished = !outcome.samples.empty();
+              LoopResult result = kept_result(key, std::move(outcome), memory, false);
+              result.unfinished = unfinished;
+              return result;
+            });
+            return done.value_or(for_process);
+          };
     };
   if (!in_threads || fall_back || audited_share(study_, options_) > 0.0)
-    work.process =
-        [this, worker = std::make_shared<CampaignWorker>(*this, basis, qp_solver_factory(options_.solver))](
-            std::int64_t key, const std::string& begun) {
-          ExperimentOutcome outcome = begun.empty() ? worker->run(key) : bytes(key).from_bytes(begun);
-          worker->experiments.audit(outcome);
-          return result(key, outcome);
-        };
+    work.process = [this, memory,
+                    worker = std::make_shared<CampaignWorker>(
+                        *this, basis, qp_solver_factory(options_.solver), memory != nullptr)](
+                       std::int64_t key, const std::string& begun) {
+      if (std::optional<KnownLoop> known = known_in(memory, key))
+        return heard_result(key, *std::move(known), worker->work(key));
+      ExperimentOutcome outcome = begun.empty() ? worker->run(key) : bytes(key).from_bytes(begun);
+      worker->experiments.audit(outcome);
+      return kept_result(key, std::move(outcome), memory, true);
+    };
   work.lost = [this, warn](std::int64_t key, const std::string& begun, const std::string& why,
                            bool again) -> std::optional<LoopResult> {
     ExperimentOutcome outcome;

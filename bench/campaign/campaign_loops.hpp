@@ -8,6 +8,7 @@
 
 #include "analysis/experiment/record_range.hpp"
 #include "bench/campaign/loop_farm.hpp"
+#include "bench/execution/loop_keys.hpp"
 #include "bench/execution/run_options.hpp"
 #include "bench/execution/stop_request.hpp"
 #include "bench/outcome/outcome_bytes.hpp"
@@ -17,8 +18,9 @@
 
 namespace mpm {
 
-/// Calibration loop i of a campaign is kept under the key kCalibrationKeys + i, experiment i under i.
-inline constexpr std::int64_t kCalibrationKeys = std::int64_t{1} << 40;
+class ExperimentWork;
+class LoopMemory;
+struct KnownLoop;
 
 /// How many experiments a run has. Throws InputError for a number that the study has not.
 std::int64_t experiment_count(const Study& study, const RunOptions& options);
@@ -28,11 +30,6 @@ std::int64_t calibration_loops(const Study& study);
 
 /// The options by which calibration loops are run: nothing is audited, no loop is kept, and always all.
 RunOptions calibration_options(RunOptions options);
-
-/// Whether loops run in threads, or in worker processes: these also where somebody else simulates the plant
-/// or is the controller, since such loops wait for other processes, which are made without other threads at
-/// work. Throws InputError for threads that the solver does not bear.
-bool runs_in_threads(const Study& study, const RunOptions& options);
 
 /// The loops of a campaign, its experiments and its calibration loops: how they are run, what is kept of
 /// them, and how that becomes records again.
@@ -48,6 +45,7 @@ class CampaignLoops {
   std::int64_t experiments() const { return experiments_; }
   /// Only where the campaign calibrates.
   const Study& calibration() const { return *calibration_; }
+  bool calibrates() const { return calibration_.has_value(); }
   /// Experiments and calibration loops.
   std::int64_t count() const { return experiments_ + calibration_loops(study_); }
 
@@ -64,8 +62,9 @@ class CampaignLoops {
   /// How they are run, by methods that have learnt from `basis`, in threads or processes. What needs Ipopt
   /// goes from threads to worker processes: audits, and with `auto` the experiments in which some answer was
   /// not certified, as a whole. A loop whose worker process died is kept as failed. `warn` is told of audits
-  /// that were lost. The basis case and this object must outlive it.
-  LoopWork work(const BasisCase& basis, const ShardStore::Warn& warn) const;
+  /// that were lost. What `memory` knows, unless it is null, is not run: the methods that it has not heard
+  /// are asked, and what is new goes there. The basis case, the memory and this object must outlive it.
+  LoopWork work(const BasisCase& basis, const ShardStore::Warn& warn, LoopMemory* memory = nullptr) const;
 
   /// An outcome as it is kept, and as it was.
   LoopResult result(std::int64_t key, const ExperimentOutcome& outcome) const;
@@ -83,6 +82,11 @@ class CampaignLoops {
   void take(Campaign& campaign, const ShardStore& store, const StopRequest& stop, bool in_memory) const;
 
  private:
+  /// Of a loop that was run.
+  LoopResult kept_result(std::int64_t key, ExperimentOutcome outcome, const LoopMemory* memory,
+                         bool by_process) const;
+  /// Of a loop that was known.
+  LoopResult heard_result(std::int64_t key, KnownLoop known, ExperimentWork& work) const;
   const OutcomeBytes& bytes(std::int64_t key) const;
   RecordRange records(const ShardStore& store, const StopRequest& stop, std::int64_t first,
                       std::int64_t count) const;

@@ -1,22 +1,27 @@
 #include "bench/campaign/campaign_runner.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <exception>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "analysis/basis/basis_runs.hpp"
+#include "analysis/methods/method_table.hpp"
 #include "base/system/surroundings.hpp"
+#include "bench/cache/loop_memory.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/execution/second_try.hpp"
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
+#include "scenarios/loop/draw.hpp"
 #include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
@@ -28,17 +33,42 @@ void require_health(const BasisCase& basis, const RunOptions& options) {
   throw UnhealthyBasis("the basis case of the study fails its self-check: " + basis.explanation);
 }
 
+/// The keys in the order in which their loops are run: where programs assess, those of a world one after the
+/// other, so that a program is told the benchmark of each once.
+std::vector<std::int64_t> in_turn(const CampaignLoops& loops, std::vector<std::int64_t> keys) {
+  const Study& study = loops.study();
+  const bool asks_programs =
+      std::any_of(study.methods.begin(), study.methods.end(), [&study](const std::string& method) {
+        return !method_table(study.assessment).method(method).origin.empty();
+      });
+  if (!study.world || !asks_programs)
+    return keys;
+  std::vector<std::pair<int, std::int64_t>> by_world;
+  for (const std::int64_t key : keys) {
+    const Study& of = key < kCalibrationKeys ? study : loops.calibration();
+    by_world.emplace_back(draw_experiment(of, key % kCalibrationKeys).world, key);
+  }
+  std::sort(by_world.begin(), by_world.end());
+  std::transform(by_world.begin(), by_world.end(), keys.begin(),
+                 [](const auto& each) { return each.second; });
+  return keys;
+}
+
 /// The basis case, and then what the store lacks of the loops with these keys.
 BasisCase run_loops(const CampaignLoops& loops, ShardStore& store, const std::vector<std::int64_t>& keys,
                     const CampaignHooks& hooks) {
   const std::int64_t count = std::ssize(keys);
   BasisCase basis =
       checked_basis(loops.study(), loops.options(), hooks, count - std::ssize(store.missing(keys)), count);
-  LoopWork work = loops.work(basis, hooks.on_warning);
+  std::optional<LoopMemory> memory;
+  if (loops.options().cache && LoopMemory::may_keep(loops.study(), loops.options()))
+    memory.emplace(loops.study(), loops.calibrates() ? &loops.calibration() : nullptr, loops.options());
+  LoopWork work = loops.work(basis, hooks.on_warning, memory ? &*memory : nullptr);
   work.stop = hooks.stop;
   work.on_start = hooks.on_start;
   work.on_done = hooks.on_done;
-  run_missing(store, keys, work);
+  const KeepAtEnd keeper(memory ? &*memory : nullptr, hooks.on_warning);
+  run_missing(store, in_turn(loops, keys), work);
   return basis;
 }
 

@@ -11,6 +11,7 @@
 
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "bench/cache/loop_memory.hpp"
 #include "bench/campaign/revisited_loops.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
@@ -136,7 +137,9 @@ RunOptions run_options(const Campaign& campaign, const ComparedLoops& loops,
           .archive = options.archive,
           .jobs = std::max(1, options.jobs),
           .leftovers = options.kept.leftovers,
-          .shard_interval = options.kept.interval};
+          .shard_interval = options.kept.interval,
+          .cache = options.cache,
+          .fresh = options.fresh};
 }
 
 /// The numbers of blind loops in the order in which they are made: that of the records, and then the
@@ -197,6 +200,9 @@ std::vector<AssessmentRecord> Comparison::lost_answers(const std::string& why) c
 }
 
 void Comparison::run(const CampaignHooks& hooks) {
+  std::optional<LoopMemory> memory;
+  if (loops_.options().cache && LoopMemory::may_keep(loops_.study(), loops_.options()))
+    memory.emplace(loops_.study(), loops_.calibrates() ? &loops_.calibration() : nullptr, loops_.options());
   const RevisitedLoops revisited{
       .campaign = campaign_,
       .study = loops_.study(),
@@ -209,12 +215,16 @@ void Comparison::run(const CampaignHooks& hooks) {
           },
       .make =
           [this](std::int64_t key, ExperimentRunner& runner, ExperimentRecord record) {
-            return kept_answers(key, std::move(record), [&](const auto& of) { return runner.assess(of); });
+            return kept_answers(key, std::move(record), [&](const ExperimentRecord& of) {
+              return of.assessments.empty() ? runner.assess(of) : of.assessments;
+            });
           },
       .lost =
           [this](std::int64_t key, ExperimentRecord record, const std::string& why) {
             return kept_answers(key, std::move(record), [&](const auto&) { return lost_answers(why); });
-          }};
+          },
+      .memory = memory ? &*memory : nullptr};
+  const KeepAtEnd keeper(revisited.memory, hooks.on_warning);
   run_revisited(store_, keys_, revisited, loops_.options().jobs, hooks);
 }
 

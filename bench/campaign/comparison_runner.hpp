@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ struct ComparisonOptions {
   std::optional<std::filesystem::path> shards = {};  ///< where the answers wait; none: in memory
   ShardStore::Options kept = {};                     ///< of this folder
   std::vector<std::filesystem::path> parts = {};     ///< folders of shards that others have left
+  std::shared_ptr<const CacheFolder> cache = {};     ///< as RunOptions has it
+  bool fresh = false;                                ///< the same
 };
 
 /// What a comparison of a campaign is on.

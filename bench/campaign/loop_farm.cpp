@@ -49,7 +49,8 @@ std::string answer(const LoopWork& work, const std::string& request) {
     refused = error.what();
   }
   ByteWriter writer;
-  transfer_all(writer, std::as_const(refused), std::as_const(result.failed), std::as_const(result.bytes));
+  transfer_all(writer, std::as_const(refused), std::as_const(result.failed), std::as_const(result.bytes),
+               std::as_const(result.aside));
   return writer.take();
 }
 
@@ -174,7 +175,7 @@ class LoopFarm {
       ByteReader reader(result.bytes);
       LoopResult done;
       std::string refused;
-      transfer_all(reader, refused, done.failed, done.bytes);
+      transfer_all(reader, refused, done.failed, done.bytes, done.aside);
       if (!refused.empty())
         throw InputError(refused);
       deliver(task.key, std::move(done));
@@ -196,6 +197,8 @@ class LoopFarm {
     if (work_.on_done)
       work_.on_done(result.failed);
     store_.add(key, std::move(result.bytes));
+    if (work_.on_aside && !result.aside.empty())
+      work_.on_aside(key, std::move(result.aside));
     if (requested(work_.stop))
       store_.flush();  // what else runs may not end in the time that there is
   }

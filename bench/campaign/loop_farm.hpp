@@ -17,6 +17,7 @@ struct LoopResult {
   std::string bytes;        ///< what is kept of it
   bool failed = false;      ///< worth mentioning to the user
   bool unfinished = false;  ///< no thread can finish it: a worker process goes on with `bytes`
+  std::string aside = {};   ///< for LoopWork::on_aside; empty: nothing
 };
 
 /// How loops are run, or whatever takes long: each a function of its key alone.
@@ -42,6 +43,8 @@ struct LoopWork {
   std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
   /// Called after each one, in the order of completion; one call at a time, from any thread.
   std::function<void(bool failed)> on_done = {};
+  /// Takes what a loop leaves besides its bytes; one call at a time, from any thread.
+  std::function<void(std::int64_t key, std::string aside)> on_aside = {};
   /// Told of what is tried once more; one call at a time, from any thread. Empty: nobody is.
   std::function<void(const std::string&)> on_warning = {};
 };

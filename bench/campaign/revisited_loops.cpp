@@ -10,6 +10,7 @@
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "base/error.hpp"
 #include "base/system/program_trust.hpp"
+#include "bench/cache/loop_memory.hpp"
 #include "bench/campaign/campaign_loops.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/execution/thread_worker.hpp"
@@ -95,6 +96,10 @@ class Revisit {
                   .on_start = hooks.on_start,
                   .on_done = hooks.on_done,
                   .on_warning = hooks.on_warning};
+    if (loops_.memory != nullptr)
+      work.on_aside = [this](std::int64_t key, std::string aside) {
+        loops_.memory->take(key, std::move(aside));
+      };
     work.thread = [this] {
       const auto make = [this](const QpSolverFactory& factory) {
         return std::make_unique<LoopRunners>(loops_, factory);
@@ -133,7 +138,7 @@ class Revisit {
     const LoopPlace place = loops_.place(key);
     if (place.of_calibration) {
       std::optional<LoopResult> result;
-      if (!by_ipopt_alone_)
+      if (!by_ipopt_alone_ || known_calibration(key))
         result = runners.run([&](LoopRunners& each) { return calibrated(key, place, each); });
       return result ? *std::move(result) : LoopResult{.bytes = "", .unfinished = true};
     }
@@ -142,7 +147,7 @@ class Revisit {
     const std::optional<LoopResult> result = runners.run([&](LoopRunners& each) -> LoopResult {
       if (by_ipopt_alone_ && each.experiments.runs_loops(record))
         return for_process(record);
-      return loops_.make(key, each.experiments, record);
+      return assessed(key, each.experiments, record, false);
     });
     records_.drop(place.index);
     return result ? *result : for_process(record);
@@ -154,17 +159,63 @@ class Revisit {
 
   /// One that failed may have needed Ipopt.
   LoopResult calibrated(std::int64_t key, const LoopPlace& place, LoopRunners& runners) const {
-    ExperimentRecord record = runners.calibration->run(place.index, loops_.calibration_store);
+    const LoopResult none{.bytes = "", .unfinished = true};
+    if (std::optional<KnownLoop> known = known_calibration(key))
+      return known->by_process && !known->unheard.empty()
+                 ? none
+                 : heard(key, *runners.calibration, *std::move(known));
+    ExperimentRecord record = runners.calibration->run(place.index, calibration_store());
     return has_processes_ && record.status == ExperimentStatus::failed
-               ? LoopResult{.bytes = "", .unfinished = true}
-               : loops_.make(key, *runners.calibration, std::move(record));
+               ? none
+               : made(key, *runners.calibration, {.record = std::move(record)});
   }
 
   LoopResult in_process(std::int64_t key, const std::string& begun, LoopRunners& runners) const {
     const LoopPlace place = loops_.place(key);
-    return place.of_calibration ? loops_.make(key, *runners.calibration,
-                                              runners.calibration->run(place.index, loops_.calibration_store))
-                                : loops_.make(key, runners.experiments, bytes_.from_bytes(begun));
+    if (!place.of_calibration)
+      return assessed(key, runners.experiments, bytes_.from_bytes(begun), true);
+    if (std::optional<KnownLoop> known = known_calibration(key))
+      return heard(key, *runners.calibration, *std::move(known));
+    return made(key, *runners.calibration,
+                {.record = runners.calibration->run(place.index, calibration_store()), .by_process = true});
+  }
+
+  StorePolicy calibration_store() const {
+    return loops_.memory == nullptr ? loops_.calibration_store : StorePolicy::all;
+  }
+
+  std::optional<KnownLoop> known_calibration(std::int64_t key) const {
+    return loops_.memory == nullptr ? std::nullopt : loops_.memory->find(key);
+  }
+
+  /// An experiment, whose loop is run unless the record has it or it is known.
+  LoopResult assessed(std::int64_t key, ExperimentRunner& runner, ExperimentRecord record,
+                      bool by_process) const {
+    if (loops_.memory == nullptr || record.loop || record.status != ExperimentStatus::ok)
+      return loops_.make(key, runner, std::move(record));
+    if (std::optional<KnownLoop> known = loops_.memory->find_same(key, record))
+      return heard(key, runner, *std::move(known));
+    KnownLoop loop{.record = std::move(record), .has_truth = false, .by_process = by_process};
+    loop.record.loop = {runner.simulated(loop.record.draw), {}};
+    loop.record.assessments = runner.assess(loop.record);
+    return made(key, runner, std::move(loop));
+  }
+
+  /// A loop that has its answers and was not known.
+  LoopResult made(std::int64_t key, ExperimentRunner& runner, KnownLoop loop) const {
+    std::string aside = loops_.memory == nullptr ? "" : loops_.memory->to_keep(key, loop);
+    LoopResult result = loops_.make(key, runner, std::move(loop.record));
+    result.aside = std::move(aside);
+    return result;
+  }
+
+  LoopResult heard(std::int64_t key, ExperimentRunner& runner, KnownLoop known) const {
+    if (!known.unheard.empty())
+      put_answers(runner.assess(known.record, known.unheard), known.record);
+    std::string aside = LoopMemory::to_keep(known);
+    LoopResult result = loops_.make(key, runner, std::move(known.record));
+    result.aside = std::move(aside);
+    return result;
   }
 
   const RevisitedLoops& loops_;

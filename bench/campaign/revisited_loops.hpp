@@ -12,6 +12,8 @@
 
 namespace mpm {
 
+class LoopMemory;
+
 /// An experiment of a campaign, or one of its calibration loops.
 struct LoopPlace {
   std::int64_t index = 0;
@@ -28,11 +30,15 @@ struct RevisitedLoops {
   StorePolicy calibration_store;     ///< what a calibration loop that is run again keeps
   /// Of a key. Keys of experiments come in ascending order of the index.
   std::function<LoopPlace(std::int64_t key)> place;
-  /// What is kept of a loop. `runner` has the methods; what it does is a function of the loop alone.
+  /// What is kept of a loop. `runner` has the methods; what it does is a function of the loop alone. A record
+  /// that has answers has those of all methods.
   std::function<LoopResult(std::int64_t key, ExperimentRunner& runner, ExperimentRecord record)> make;
   /// What is kept of a loop over which two worker processes died, `why`. The record of a calibration loop has
   /// nothing but its draw and the status `failed`.
   std::function<LoopResult(std::int64_t key, ExperimentRecord record, const std::string& why)> lost;
+  /// What earlier runs have left of loops whose keys are those of CampaignLoops, with what methods said; what
+  /// is new goes there. Null: nothing.
+  LoopMemory* memory = nullptr;
 };
 
 /// Runs what the store lacks of these keys, as run_missing(): in threads by the active-set method, and in

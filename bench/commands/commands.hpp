@@ -30,6 +30,7 @@ AddCommand add_assess;       // records of a plant: what the methods say of them
 AddCommand add_repair;       // identifies a named channel again, and says what the repaired controller brings
 AddCommand add_reproduce;    // the tables of the thesis
 AddCommand add_export;       // a table of an archive as CSV
+AddCommand add_cache;        // the loops that are kept for the next suite
 AddCommand add_list;         // the shipped studies
 AddCommand add_show;         // the text of one of them
 AddCommand add_manual;       // the manual page, from the declarations of all commands
@@ -48,7 +49,7 @@ inline std::vector<Task> tasks() {
           {"Look at the results", {add_summary, add_report, add_plot, add_check, add_export, add_replay}},
           {"Assess the records of a plant", {add_assess, add_identify, add_repair}},
           {"Shipped studies and the program itself",
-           {add_list, add_show, add_reproduce, add_manual, add_completion}}};
+           {add_list, add_show, add_reproduce, add_cache, add_manual, add_completion}}};
 }
 
 }  // namespace mpm

@@ -161,6 +161,10 @@ void add_overwrite(CLI::App& app, bool& overwrite) {
                "study or seed");
 }
 
+void add_fresh(CLI::App& app, bool& fresh) {
+  app.add_flag("--fresh", fresh, "Run all loops, also those that the cache of an earlier run has");
+}
+
 void add_full(CLI::App& app, bool& full) {
   app.add_flag("--full", full, "All tables, not only the first one");
 }

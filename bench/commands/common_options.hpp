@@ -62,6 +62,8 @@ std::optional<PartNumber> part_of_option(const std::string& text);
 void add_shard_interval(CLI::App& app, double& interval);
 /// --overwrite of a command that writes archives (require_replaceable()).
 void add_overwrite(CLI::App& app, bool& overwrite);
+/// --fresh of a command that runs studies whose loops are kept (LoopMemory).
+void add_fresh(CLI::App& app, bool& fresh);
 /// --full of a command whose text is one screen without it (document_text()).
 void add_full(CLI::App& app, bool& full);
 void add_json(CLI::App& app, bool& json);

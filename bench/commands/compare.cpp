@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/system/temporary_folder.hpp"
+#include "bench/cache/cache_folder.hpp"
 #include "bench/campaign/comparison_runner.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -55,6 +56,7 @@ struct CompareArguments {
   bool overwrite = false;
   bool dry_run = false;
   double shard_interval = RunOptions().shard_interval;
+  bool fresh = false;
   bool full = false;
   bool json = false;
   bool quiet = false;
@@ -180,6 +182,8 @@ std::unique_ptr<Comparison> open_comparison(const ComparisonTask& task, std::fil
                                             Progress& progress) {
   const CompareArguments& options = task.options;
   ComparisonOptions comparison = task.comparison;
+  comparison.cache = user_cache();
+  comparison.fresh = options.fresh;
   comparison.archive = task.digest;
   comparison.shards = std::move(shards);
   comparison.kept = {.leftovers = options.discard ? Leftovers::discard : Leftovers::resume,
@@ -377,6 +381,7 @@ void add_compare(CommandSet& commands) {
   add_shard_interval(app, options->shard_interval);
   add_jobs(app, options->jobs, "How many loops are assessed at once");
   add_untimed_dry_run(app, options->dry_run);
+  add_fresh(app, options->fresh);
   add_full(app, options->full);
   add_json(app, options->json);
   add_quiet(app, options->quiet);

@@ -17,6 +17,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/study_files/suite_file.hpp"
 #include "base/error.hpp"
+#include "bench/cache/cache_folder.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
@@ -170,6 +171,7 @@ ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
                     : with_programs(options.run.methods, suite.methods, programs);
   run.methods = table->known(run.methods.empty() ? suite.methods : run.methods,
                              run.methods.empty() ? "suite.methods" : "--methods");
+  run.cache = user_cache();
   const fs::path folder = options.output;
   const std::optional<PartNumber> part = part_of_option(options.shard);
   const std::vector<const SuiteCell*> cells = cells_of(suite, part);
@@ -251,6 +253,7 @@ void add_suite(CommandSet& commands) {
       ->delimiter(',');
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_overwrite(app, options->overwrite);
+  add_fresh(app, options->run.fresh);
   add_dry_run(app, options->dry_run);
   add_full(app, options->full);
   add_json(app, options->json);

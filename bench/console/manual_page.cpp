@@ -28,6 +28,12 @@ Wrong usage or wrong input; the message names the file, the key, what was found 
 Not finished: the command was interrupted, something failed, or output on stdout was lost. Finished work is kept, and \-\-resume continues.
 .SH ENVIRONMENT
 .TP
+MPMBENCH_CACHE
+Folder in which loops are kept for the next suite, or off (default: mpmbench in XDG_CACHE_HOME or ~/.cache).
+.TP
+MPMBENCH_CACHE_MB
+Its largest size in megabytes (default: 2000).
+.TP
 MPMBENCH_STUDIES
 Folder of the shipped studies (default: the one beside the program).
 )";

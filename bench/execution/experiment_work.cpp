@@ -1,5 +1,6 @@
 #include "bench/execution/experiment_work.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <string>
 #include <utility>
@@ -18,16 +19,25 @@ ExperimentWork::ExperimentWork(const Study& study, const Study& basis_study, con
                                const RunOptions& options, const QpSolverFactory& factory)
     : study_(study),
       options_(options),
-      runner_(study, assessment_context(basis_study, basis, factory),
-              options.assessor ? std::vector<std::string>{} : study_methods(study)),
+      basis_(basis),
+      basis_study_(basis_study),
+      factory_(factory),
       assessor_(options.assessor ? options.assessor() : LoopAssessor{}) {}
+
+ExperimentRunner& ExperimentWork::runner() {
+  if (!runner_)
+    runner_.emplace(study_, assessment_context(basis_study_, basis_, factory_),
+                    assessor_ ? std::vector<std::string>{} : study_methods(study_));
+  return *runner_;
+}
 
 ExperimentOutcome ExperimentWork::run(std::int64_t index) {
   ExperimentOutcome outcome;
+  ExperimentRunner& experiments = runner();
   try {
     AuditSampler sampler(study_.seed, index, audited_share(study_, options_));
-    outcome.record = runner_.run(index, assessor_ ? StorePolicy::all : options_.store,
-                                 [&](const Controller& controller) { sampler.observe(controller); });
+    outcome.record = experiments.run(index, assessor_ ? StorePolicy::all : options_.store,
+                                     [&](const Controller& controller) { sampler.observe(controller); });
     if (assessor_) {
       answer(outcome.record, study_, assessor_);
       if (options_.store == StorePolicy::none)
@@ -41,6 +51,17 @@ ExperimentOutcome ExperimentWork::run(std::int64_t index) {
     outcome.record = lost_record(study_, index, error.what());
   }
   return outcome;
+}
+
+void ExperimentWork::assess(ExperimentRecord& record, const std::vector<std::string>& methods) {
+  ExperimentRunner& experiments = runner();
+  try {
+    put_answers(experiments.assess(record, methods), record);
+  } catch (const std::exception& error) {
+    if (is_of_surroundings(error))
+      throw;
+    record = lost_record(study_, record.draw.index, error.what());
+  }
 }
 
 void ExperimentWork::audit(ExperimentOutcome& outcome) {
@@ -65,6 +86,13 @@ ExperimentRecord lost_record(const Study& study, std::int64_t index, std::string
   record.message = std::move(why);
   record.assessments = unassessed(assessment_forms(study, study_methods(study)));
   return record;
+}
+
+void put_answers(std::vector<AssessmentRecord> answers, ExperimentRecord& record) {
+  for (AssessmentRecord& said : answers)
+    *std::find_if(record.assessments.begin(), record.assessments.end(), [&said](const AssessmentRecord& of) {
+      return of.form->method().name == said.form->method().name;
+    }) = std::move(said);
 }
 
 }  // namespace mpm

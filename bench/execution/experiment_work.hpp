@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/execution/run_options.hpp"
 #include "bench/outcome/outcome_bytes.hpp"
@@ -23,18 +24,30 @@ class ExperimentWork {
   /// surroundings failed (is_of_surroundings()): that is thrown.
   ExperimentOutcome run(std::int64_t index);
 
+  /// Has these of its methods assess an experiment with status ok that was run before and has its loop, and
+  /// puts their answers in their places. Errors: as run().
+  void assess(ExperimentRecord& record, const std::vector<std::string>& methods);
+
   /// Audits the samples of an outcome. Calls Ipopt.
   void audit(ExperimentOutcome& outcome);
 
  private:
   const Study& study_;
   const RunOptions& options_;
-  ExperimentRunner runner_;
-  LoopAssessor assessor_;           ///< empty: the runner assesses
-  std::optional<Auditor> auditor_;  ///< made when first needed
+  ExperimentRunner& runner();
+
+  const BasisCase& basis_;
+  const Study& basis_study_;
+  QpSolverFactory factory_;
+  std::optional<ExperimentRunner> runner_;  ///< made when first needed
+  LoopAssessor assessor_;                   ///< empty: the runner assesses
+  std::optional<Auditor> auditor_;          ///< made when first needed
 };
 
 /// The record of an experiment that was lost, with the reason.
 ExperimentRecord lost_record(const Study& study, std::int64_t index, std::string why);
+
+/// Puts answers in the places of their methods, which the record must have.
+void put_answers(std::vector<AssessmentRecord> answers, ExperimentRecord& record);
 
 }  // namespace mpm

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "base/error.hpp"
@@ -38,6 +40,19 @@ Study study_to_run(Study study, const RunOptions& options) {
                       : method_table(study.assessment).known(options.methods, "--methods");
   check_reported(study);
   return study;
+}
+
+bool has_foreign_part(const Study& study) {
+  return (study.nonlinear && study.nonlinear->model.foreign) || study.controller_program;
+}
+
+bool runs_in_threads(const Study& study, const RunOptions& options) {
+  const bool safe = options.solver == "auto" || options.solver == "active-set";
+  if (options.parallel == Parallel::threads && !safe)
+    throw InputError("parallel", fmt::format("threads for the solver {}", options.solver),
+                     "processes, or one of the solvers auto and active-set");
+  return options.parallel == Parallel::by_solver ? safe && !has_foreign_part(study)
+                                                 : options.parallel == Parallel::threads;
 }
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,8 @@
 #include "analysis/records/trial_record.hpp"
 
 namespace mpm {
+
+class CacheFolder;
 
 /// What runs experiments at the same time. `by_solver`: threads for `auto` and `active-set`, whose
 /// experiments take milliseconds; processes for the others, because Ipopt with sequential MUMPS is not
@@ -48,11 +51,22 @@ struct RunOptions {
   /// A shard is written when the last one is this old, in s, >= 0. A run that is killed loses as much at
   /// most, beside what is under way; with 2 s, ten hours make 18000 files, which a folder holds well.
   double shard_interval = 2.0;
+  /// Where loops, and what methods of this program say of them, are kept for the next run; null: nowhere.
+  std::shared_ptr<const CacheFolder> cache = {};
+  bool fresh = false;  ///< what is kept there is made again
 };
 
 /// The study that is run with these options: with their seed and methods, all of them spelled out. Throws
 /// InputError for an unknown method.
 Study study_to_run(Study study, const RunOptions& options);
+
+/// Whether somebody else simulates the plant or is the controller.
+bool has_foreign_part(const Study& study);
+
+/// Whether loops run in threads, or in worker processes: these also where somebody else simulates the plant
+/// or is the controller, since such loops wait for other processes, which are made without other threads at
+/// work. Throws InputError for threads that the solver does not bear.
+bool runs_in_threads(const Study& study, const RunOptions& options);
 
 /// The share of the steps that is audited: the other solvers have nothing to be audited by, and a controller
 /// that is a program poses no problems.

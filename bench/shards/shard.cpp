@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -65,7 +66,7 @@ std::optional<ShardContent> read_shard(const std::filesystem::path& path, const 
   std::ifstream file(path, std::ios::binary);
   if (std::error_code no_status; !file && !std::filesystem::exists(path, no_status))
     throw ShardGone(path);
-  const std::string bytes = content_of(file);
+  std::string bytes = content_of(file);
   const std::optional<std::string_view> content = unsealed(bytes);
   if (!content)
     return std::nullopt;
@@ -87,6 +88,7 @@ std::optional<ShardContent> read_shard(const std::filesystem::path& path, const 
       place.begin = content->size() - reader.left() - place.size;
       read.places.push_back(place);
     }
+    read.file = std::move(bytes);
     return read;
   } catch (const std::runtime_error& error) {
     throw UnreadableShard(path, error.what());

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.hpp"
@@ -59,6 +60,11 @@ struct ShardPlace {
 struct ShardContent {
   double seconds = 0.0;  ///< wall-clock time that it took
   std::vector<ShardPlace> places;
+  std::string file;  ///< all bytes of the shard
+
+  std::string_view bytes(const ShardPlace& place) const {
+    return std::string_view(file).substr(place.begin, place.size);
+  }
 };
 
 /// The content of a shard; none when it is cut off or damaged (its checksum does not fit) or cannot be read.

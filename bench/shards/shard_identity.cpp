@@ -36,8 +36,8 @@ std::string study_text(const Study& study) {
 }  // namespace
 
 std::string program_identity() {
-  return fmt::format("mpmbench {} {} (program {})", mpmbench_version(), source_revision(),
-                     digest_of_file("/proc/self/exe"));
+  static const std::string file = digest_of_file("/proc/self/exe");
+  return fmt::format("mpmbench {} {} (program {})", mpmbench_version(), source_revision(), file);
 }
 
 ShardIdentity shard_identity(const Study& study, const RunOptions& options) {

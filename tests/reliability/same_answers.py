@@ -30,7 +30,7 @@ def main(program, command, name, *options):
             output.mkdir()
             subprocess.run([program, command, name, "-o", output if command == "suite" else output / "archive.h5",
                             "--quiet", *jobs, *options], check=True, stdout=subprocess.DEVNULL,
-                           env={**os.environ, **environment})
+                           env={**os.environ, **environment, "MPMBENCH_CACHE": "off"})
         first, second = (sorted(pathlib.Path(folder, way).glob("*.h5")) for way in WAYS)
         assert [path.name for path in first] == [path.name for path in second] != [], (first, second)
         different = 0

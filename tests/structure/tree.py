@@ -23,7 +23,7 @@ FOLDERS = {
     "analysis/methods": ["", "shared", "thesis", "literature", "ours"],
     "results": ["files", "archive", "records", "blind", "text", "plot", "document", "summary", "gates", "report", "assess",
                 "reproduction", "suite"],
-    "bench": ["version.hpp", "files", "outcome", "execution", "shards", "parts", "campaign", "console", "commands", "perf"],
+    "bench": ["version.hpp", "files", "outcome", "execution", "shards", "parts", "cache", "campaign", "console", "commands", "perf"],
 }
 
 # At the root: what .gitignore names and what tools leave there.

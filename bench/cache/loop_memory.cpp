@@ -1,0 +1,277 @@
+#include "bench/cache/loop_memory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <exception>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "analysis/methods/method_table.hpp"
+#include "base/sha256.hpp"
+#include "base/system/loaded_code.hpp"
+#include "base/system/surroundings.hpp"
+#include "bench/execution/loop_keys.hpp"
+#include "bench/shards/shard_identity.hpp"
+#include "results/files/byte_stream.hpp"
+#include "results/files/deflated.hpp"
+
+namespace mpm {
+namespace {
+
+/// A campaign of more bytes is not kept beyond them: all of it is in memory.
+constexpr std::size_t kMostHeld = std::size_t{256} << 20;
+
+/// What decides on last bits besides the program: libraries, processor, and what these are told.
+std::string this_machine() {
+  std::string text = loaded_code();
+  for (const char* const name :
+       std::array{"MPMBENCH_KERNELS", "OPENBLAS_CORETYPE", "OPENBLAS_NUM_THREADS", "GLIBC_TUNABLES"})
+    if (const char* const value = std::getenv(name))
+      text += fmt::format("{}={}\n", name, value);
+  return digest_of(text);
+}
+
+ShardIdentity memory_identity(const Study& study, const RunOptions& options, const char* content) {
+  static const std::string of_machine = this_machine();
+  return {{"content", content},
+          {"program", program_identity()},
+          {"machine", of_machine},
+          {"study", sha256(std::as_bytes(std::span(study.source)))},
+          {"seed", fmt::format("{}", study.seed)},
+          {"solver", options.solver},
+          {"workers", runs_in_threads(study, options) ? "threads" : "processes"}};
+}
+
+template <class Stream, class Answer>
+void transfer_answer(Stream& stream, Answer& answer) {
+  auto& [form, status, reason, flagged, score, cv, source, numbers, milliseconds] = answer;
+  transfer_all(stream, status, reason, flagged, score, cv, source, numbers, milliseconds);
+}
+
+template <class Stream, class Answers>
+void transfer_answers(Stream& stream, Answers& answers) {
+  transfer_list(stream, answers, [&](auto& answer) { transfer_all(stream, answer.first, answer.second); });
+}
+
+using NamedAnswers = std::vector<std::pair<std::string, std::string>>;
+
+std::string bytes_to_keep(const std::string& loop, const NamedAnswers& answers) {
+  if (loop.empty() && answers.empty())
+    return "";
+  ByteWriter writer;
+  transfer(writer, loop);
+  transfer_answers(writer, answers);
+  return writer.take();
+}
+
+/// The answers of these methods that may be kept.
+NamedAnswers answers_to_keep(const ExperimentRecord& record, const std::vector<std::string>& asked,
+                             bool by_process) {
+  NamedAnswers answers;
+  for (const AssessmentRecord& said : record.assessments) {
+    const MethodDescription& method = said.form->method();
+    // Ipopt, which only a process has, has a limit of time.
+    const bool is_kept =
+        said.status == AssessmentStatus::failed ? !by_process : record.status == ExperimentStatus::ok;
+    if (!method.origin.empty() || !is_kept ||
+        std::find(asked.begin(), asked.end(), method.name) == asked.end())
+      continue;
+    ByteWriter writer;
+    transfer_answer(writer, said);
+    answers.emplace_back(method.name, writer.take());
+  }
+  return answers;
+}
+
+/// The record without answers; its loop, where it is to be assessed again, without what follows from it.
+ExperimentRecord unanswered(ExperimentRecord record) {
+  record.assessments.clear();
+  if (record.status != ExperimentStatus::ok)
+    record.loop.reset();
+  if (record.loop)
+    record.loop->y_sim =
+        Eigen::MatrixXd::Zero(record.loop->trajectory.y.rows(), record.loop->trajectory.y.cols());
+  return record;
+}
+
+}  // namespace
+
+bool LoopMemory::may_keep(const Study& study, const RunOptions& options) {
+  return !has_foreign_part(study) && !options.assessor && audited_share(study, options) == 0.0 &&
+         options.store == StorePolicy::none;
+}
+
+LoopMemory::LoopMemory(const Study& study, const Study* calibration, const RunOptions& options)
+    : folder_(options.cache),
+      loop_identity_(memory_identity(study, options, "loops")),
+      answer_identity_(memory_identity(study, options, "answers")),
+      forms_(assessment_forms(study, study_methods(study))),
+      bytes_(study, AssessmentForms{}) {
+  if (calibration != nullptr)
+    calibration_bytes_.emplace(*calibration, AssessmentForms{});
+  if (!options.fresh)
+    read();
+}
+
+void LoopMemory::read() {
+  const std::optional<ShardContent> loops = folder_->read(loop_identity_);
+  const std::optional<ShardContent> answers = loops ? folder_->read(answer_identity_) : std::nullopt;
+  if (!loops)
+    return;
+  for (const ShardPlace& place : loops->places)
+    held_ += loops_.insert_or_assign(place.key, loops->bytes(place)).first->second.size();
+  if (!answers)
+    return;
+  for (const ShardPlace& place : answers->places) {
+    NamedAnswers named;
+    ByteReader reader(answers->bytes(place));
+    try {
+      transfer_answers(reader, named);
+    } catch (const std::runtime_error&) {  // bytes that this program does not write
+      continue;
+    }
+    answers_[place.key] = Answers(named.begin(), named.end());
+  }
+}
+
+const RecordBytes& LoopMemory::bytes_of(std::int64_t key) const {
+  return key < kCalibrationKeys || !calibration_bytes_ ? bytes_ : *calibration_bytes_;
+}
+
+std::optional<KnownLoop> LoopMemory::find(std::int64_t key) const {
+  std::optional<KnownLoop> known = kept_loop(key);
+  return known && known->has_truth ? std::move(known) : std::nullopt;
+}
+
+std::optional<KnownLoop> LoopMemory::find_same(std::int64_t key, const ExperimentRecord& record) const {
+  std::optional<KnownLoop> known = kept_loop(key);
+  if (!known || known->record.status != ExperimentStatus::ok)
+    return std::nullopt;
+  const std::optional<LoopRecord> loop = std::exchange(known->record.loop, std::nullopt);
+  ExperimentRecord without = record;
+  without.loop.reset();
+  without.truth.reset();
+  if (!bytes_of(key).differences(without, known->record).empty())
+    return std::nullopt;
+  known->record.loop = loop;
+  return known;
+}
+
+std::optional<KnownLoop> LoopMemory::kept_loop(std::int64_t key) const {
+  const auto loop = loops_.find(key);
+  if (loop == loops_.end())
+    return std::nullopt;
+  try {
+    return known_loop(key, loop->second);
+  } catch (const std::exception& error) {  // bytes that this program does not write
+    if (is_of_surroundings(error))
+      throw;
+    return std::nullopt;
+  }
+}
+
+KnownLoop LoopMemory::known_loop(std::int64_t key, const std::string& loop) const {
+  KnownLoop known;
+  const std::string bytes = inflated(loop);
+  ByteReader reader(bytes);
+  transfer_all(reader, known.has_truth, known.by_process);
+  known.record = bytes_of(key).from_bytes(std::string_view(bytes).substr(bytes.size() - reader.left()));
+  if (known.record.draw.index != key % kCalibrationKeys)
+    throw std::runtime_error(fmt::format("loop {}", known.record.draw.index));
+  known.record.assessments = unassessed(forms_);
+  if (known.record.status != ExperimentStatus::ok)
+    return known;
+  const auto answers = answers_.find(key);
+  for (AssessmentRecord& said : known.record.assessments) {
+    const std::string& method = said.form->method().name;
+    if (answers == answers_.end() || answers->second.count(method) == 0 ||
+        !said.form->method().origin.empty()) {
+      known.unheard.push_back(method);
+      continue;
+    }
+    ByteReader answer(answers->second.find(method)->second);
+    transfer_answer(answer, said);
+    answer.require_end();
+  }
+  return known;
+}
+
+std::string LoopMemory::to_keep(std::int64_t key, const KnownLoop& loop) const {
+  if (loop.record.status == ExperimentStatus::failed)
+    return "";
+  ByteWriter writer;
+  transfer_all(writer, loop.has_truth, loop.by_process);
+  const std::string content = writer.take() + bytes_of(key).to_bytes(unanswered(loop.record));
+  std::vector<std::string> all;
+  for (const auto& form : forms_)
+    all.push_back(form->method().name);
+  return bytes_to_keep(deflated(content), answers_to_keep(loop.record, all, loop.by_process));
+}
+
+std::string LoopMemory::to_keep(const KnownLoop& known) {
+  return bytes_to_keep("", answers_to_keep(known.record, known.unheard, known.by_process));
+}
+
+void LoopMemory::take(std::int64_t key, std::string bytes) {
+  if (held_ + bytes.size() > kMostHeld)
+    return;
+  held_ += bytes.size();
+  taken_.emplace_back(key, std::move(bytes));
+}
+
+void LoopMemory::merge(std::int64_t key, const std::string& bytes) {
+  ByteReader reader(bytes);
+  std::string loop;
+  NamedAnswers answers;
+  transfer(reader, loop);
+  transfer_answers(reader, answers);
+  if (!loop.empty()) {
+    loops_.insert_or_assign(key, std::move(loop));
+    new_loops_ = true;
+  }
+  if (answers.empty() || loops_.count(key) == 0)
+    return;
+  for (auto& [method, answer] : answers)
+    answers_[key].insert_or_assign(method, std::move(answer));
+  new_answers_ = true;
+}
+
+std::optional<std::string> LoopMemory::write() {
+  for (const auto& [key, bytes] : std::exchange(taken_, {}))
+    merge(key, bytes);
+  std::optional<std::string> trouble;
+  if (std::exchange(new_loops_, false)) {
+    ShardBytes content;
+    for (const auto& [key, loop] : loops_)
+      content.add(key, loop);
+    trouble = folder_->write(content, loop_identity_);
+  }
+  if (std::exchange(new_answers_, false)) {
+    ShardBytes content;
+    for (const auto& [key, of_loop] : answers_) {
+      const NamedAnswers named(of_loop.begin(), of_loop.end());
+      ByteWriter writer;
+      transfer_answers(writer, named);
+      content.add(key, writer.take());
+    }
+    const std::optional<std::string> second = folder_->write(content, answer_identity_);
+    trouble = trouble ? trouble : second;
+  }
+  return trouble;
+}
+
+KeepAtEnd::~KeepAtEnd() {
+  try {
+    const std::optional<std::string> trouble = memory_ == nullptr ? std::nullopt : memory_->write();
+    if (trouble && warn_)
+      warn_(fmt::format("loops are not kept for the next run: {}", *trouble));
+  } catch (const std::exception&) {  // no memory is left: then nothing is kept
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/experiment/experiment_record.hpp"
+#include "bench/cache/cache_folder.hpp"
+#include "bench/execution/run_options.hpp"
+#include "results/archive/record_bytes.hpp"
+#include "scenarios/study/study.hpp"
+
+namespace mpm {
+
+/// What is known of a loop before it is run.
+struct KnownLoop {
+  /// With its loop where its status is ok, and with the answers that are known.
+  ExperimentRecord record;
+  std::vector<std::string> unheard = {};  ///< methods whose answers are not
+  bool has_truth = true;                  ///< of an experiment that this program has run as a whole
+  bool by_process = false;                ///< a worker process ran it, as the methods are to be asked by one
+};
+
+/// The loops of one campaign that an earlier run has left in a cache, each with its truth, and what methods
+/// of this program have said of them: what decides on them is the program with the libraries and the
+/// processor that it runs on, text and seed of the study, the solver, and whether threads or worker processes
+/// run. Of programs of others nothing is kept, since nobody knows what their answers depend on, and nothing
+/// that has failed, since that may be a matter of time.
+class LoopMemory {
+ public:
+  /// Whether the loops of this campaign may be kept: some have a plant or a controller of somebody else, are
+  /// audited, or are assessed by what RunOptions::assessor makes.
+  static bool may_keep(const Study& study, const RunOptions& options);
+
+  /// Of a campaign whose study and calibration study, or null, must outlive it.
+  LoopMemory(const Study& study, const Study* calibration, const RunOptions& options);
+  LoopMemory(const LoopMemory&) = delete;
+  LoopMemory& operator=(const LoopMemory&) = delete;
+
+  /// The loop with this key of CampaignLoops, with its truth; none: it has to be run. From any thread.
+  std::optional<KnownLoop> find(std::int64_t key) const;
+  /// The same for an experiment of an archive, whose truth is there; none where the record differs from that
+  /// of the archive in anything.
+  std::optional<KnownLoop> find_same(std::int64_t key, const ExperimentRecord& record) const;
+
+  /// What is to be kept of a loop that was not known, with its answers, as bytes. Empty: nothing.
+  std::string to_keep(std::int64_t key, const KnownLoop& loop) const;
+  /// The same of one that was known, once the methods that were not heard have answered.
+  static std::string to_keep(const KnownLoop& known);
+  /// Takes such bytes. One call at a time; find() may run beside it, and does not find them.
+  void take(std::int64_t key, std::string bytes);
+
+  /// Leaves what is new in the cache. The reason why that cannot be done, the first time.
+  std::optional<std::string> write();
+
+ private:
+  using Answers = std::map<std::string, std::string, std::less<>>;  ///< bytes by method
+
+  const RecordBytes& bytes_of(std::int64_t key) const;
+  std::optional<KnownLoop> kept_loop(std::int64_t key) const;
+  KnownLoop known_loop(std::int64_t key, const std::string& loop) const;
+  void read();
+  void merge(std::int64_t key, const std::string& bytes);
+
+  std::shared_ptr<const CacheFolder> folder_;
+  ShardIdentity loop_identity_, answer_identity_;
+  AssessmentForms forms_;
+  RecordBytes bytes_;
+  std::optional<RecordBytes> calibration_bytes_;
+  std::map<std::int64_t, std::string> loops_;
+  std::map<std::int64_t, Answers> answers_;
+  std::size_t held_ = 0;  ///< bytes
+  std::vector<std::pair<std::int64_t, std::string>> taken_;
+  bool new_loops_ = false, new_answers_ = false;
+};
+
+/// Leaves what is new in the cache when its scope ends, also by an exception: what an interrupted run has
+/// done is kept as well. `warn`, unless it is empty, is told why that cannot be done.
+class KeepAtEnd {
+ public:
+  KeepAtEnd(LoopMemory* memory, std::function<void(const std::string&)> warn)
+      : memory_(memory), warn_(std::move(warn)) {}
+  ~KeepAtEnd();
+  KeepAtEnd(const KeepAtEnd&) = delete;
+  KeepAtEnd& operator=(const KeepAtEnd&) = delete;
+
+ private:
+  LoopMemory* memory_;
+  std::function<void(const std::string&)> warn_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,296 @@
+"""What a suite leaves in the cache of the user, and that a suite that takes it up gives what it gives without one.
+
+usage: check_cache.py MPMBENCH
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import h5py
+
+from archives import check_same
+
+PATIENCE = 300  # s, for a machine that is busy with other things
+
+# Worlds and another excitation in each loop, so that every loop has a context of its own; a family with both faults on one
+# CV, whose loops are run three times; calibration loops; and a cell that cannot be run.
+SUITE = """
+[suite]
+name = "kept"
+version = "0.1"
+title = "for a test"
+seed = SEED
+methods = ["botelho", "sun", "sse"]
+[common]
+set.experiments = {mpm = 3, ud = 3, mpm_ud = 0, healthy = 2, tuning = 2}
+set.calibration = {healthy = 4, ud = 0}
+[[plant]]
+name = "column"
+study = "wood-berry"
+remove = ["simulation.random_steps"]
+set.simulation.samples = 200
+set.simulation.step = [{md = "F", sample = 20, level = 0.4}, {md = "F", sample = 60, level = -0.4},
+  {md = "F", sample = 100, level = 0.4}, {md = "F", sample = 140, level = -0.4}]
+[[family]]
+name = "both"
+title = "both faults"
+set.experiments = {mpm = 0, ud = 0, mpm_ud = 8, tuning = 0}
+[[family]]
+name = "worlds"
+title = "every loop has a context of its own"
+set.simulation.excitation = "each"
+set.diagnosis.unstable = "exclude"
+set.world = {count = 2, cost_loops = 1, repair_loops = 1, gain_factor = {uniform = [0.9, 1.1]}}
+[[family]]
+name = "noisy"
+title = "noise alone"
+set.simulation.noise_standard_deviation = 5.0
+"""
+CELLS = ["column.both", "column.worlds"]
+METHOD = """
+import json, sys
+log = open({log!r}, "a", buffering=1)
+print("start", file=log)
+options, contexts = {{}}, 0
+for line in sys.stdin:
+    if line.strip():
+        message, answer = json.loads(line), {{}}
+        print(message["ask"], file=log)
+        if message["ask"] == "describe":
+            options = message["describe"]["options"]
+        contexts += message["ask"] == "context"
+        if contexts > 1 and options.get("strict"):
+            sys.exit("a second context")
+        if message["ask"] == "loop":
+            largest = max(abs(y) for row in message["loop"]["y"] for y in row)
+            answer = {{"flagged": largest > options["threshold"], "score": largest}}
+        print(json.dumps({{"number": message["number"], **answer}}), flush=True)
+"""
+
+
+class Cached:
+    def __init__(self, program, folder):
+        self.program, self.folder, self.log = program, folder, folder / "asked.log"
+        self.cache = folder / "cache"
+        self.suite(5)
+        (folder / "mine.py").write_text(METHOD.format(log=str(self.log)))
+
+    def suite(self, seed, change=("", "")):
+        (self.folder / "kept.toml").write_text(SUITE.replace("SEED", str(seed)).replace(*change))
+
+    def methods(self, **thresholds):
+        path = self.folder / "mine.toml"
+        path.write_text("".join(f'[method.{name}]\ncommand = ["{sys.executable}", "{self.folder}/mine.py"]\n'
+                                f"options = {{threshold = {threshold}}}\n" for name, threshold in thresholds.items()))
+        return ["--method-file", path]
+
+    def run(self, output, *words, cache=None, program=None, **environment):
+        command = [program or self.program, "suite", self.folder / "kept.toml", "-o", self.folder / output, "--json", *words]
+        result = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=PATIENCE,
+                                env={**os.environ, "MPMBENCH_CACHE": str(cache or self.cache), **environment})
+        assert result.returncode == 0, (words, result.returncode, result.stdout, result.stderr)
+        return result
+
+    def shown(self, *words, **environment):
+        return subprocess.run([self.program, "cache", *words], capture_output=True, text=True, check=True,
+                              env={**os.environ, "MPMBENCH_CACHE": str(self.cache), **environment}).stdout
+
+    def asked(self):
+        lines = self.log.read_text().split() if self.log.exists() else []
+        self.log.unlink(missing_ok=True)
+        return {ask: lines.count(ask) for ask in ("start", "describe", "context", "loop")}
+
+    def check_same(self, output, other):
+        for cell in CELLS:
+            check_same(self.folder / output / f"{cell}.h5", self.folder / other / f"{cell}.h5")
+        for name in "leaderboard.json", "kept.board.json", "leaderboard.csv":
+            assert (self.folder / output / name).read_bytes() == (self.folder / other / name).read_bytes(), name
+
+    def times(self, output, method="sse"):
+        """What the answers of a method cost, which differs from one time that it is asked to the next."""
+        found = []
+        for cell in CELLS:
+            with h5py.File(self.folder / output / f"{cell}.h5") as file:
+                found.append(file[f"methods/{method}"].attrs["milliseconds"])
+        return found
+
+    def files(self):
+        return {path.name: path.read_bytes() for path in self.cache.iterdir()}
+
+
+def check_same_answers(cached):
+    """Bit for bit, by any number of threads, and of methods of this program none is asked again."""
+    cached.run("without", "--jobs", 1, cache="off")
+    assert not cached.cache.exists()
+    cached.run("first", "--jobs", 2)
+    assert len(cached.files()) == 2 * len(CELLS), cached.files().keys()
+    kept = cached.files()
+    for output, jobs in ("again", 1), ("and again", 2):
+        cached.run(output, "--jobs", jobs)
+        assert cached.times(output) == cached.times("first") != cached.times("without")
+    assert cached.files() == kept
+    for output in "first", "again", "and again":
+        cached.check_same(output, "without")
+    # Further methods, and fewer and more experiments, take up what is there.
+    words = ["--methods", "botelho,sse,likelihood", "--experiments", 6]
+    cached.run("other without", *words, cache="off")
+    cached.run("other", *words)
+    cached.check_same("other", "other without")
+    assert cached.times("other") != cached.times("first")  # of six loops, and not of all
+    cached.run("more", "--methods", "all")
+    cached.run("more without", "--methods", "all", cache="off")
+    cached.check_same("more", "more without")
+    cached.run("more again", "--methods", "all", "--jobs", 2)
+    cached.check_same("more again", "more without")
+    assert cached.times("more again", "likelihood") == cached.times("more", "likelihood")
+
+
+def check_changed_method(cached):
+    """A program is started once for each thread and asked about every loop; a change of it asks nothing else."""
+    words = ["--jobs", 1, "--join", "none", "--methods", "sse"]
+    cached.run("mine without", *words, *cached.methods(mine=1.0, other=2.0), cache="off")
+    before = cached.asked()
+    assert before["start"] == before["describe"] == 2, before
+    # Each is told the contexts of the cell with both faults, of the two worlds, and of a controller that is changed.
+    assert before["context"] < before["loop"] / 2, before
+    kept = cached.files()
+    cached.run("mine", *words, *cached.methods(mine=1.0, other=2.0))
+    assert cached.asked() == before
+    cached.check_same("mine", "mine without")
+    cached.run("changed", *words, *cached.methods(mine=1.5, other=2.0))
+    assert cached.asked() == before
+    assert cached.times("changed") == cached.times("mine")
+    assert cached.files().keys() == kept.keys()
+    cached.run("changed without", *words, *cached.methods(mine=1.5, other=2.0), cache="off")
+    cached.check_same("changed", "changed without")
+    # One that bears no second context is started anew for it.
+    board = json.loads(cached.run("strict", *words, *cached.methods(mine="1.0, strict = true")).stdout)
+    answered = next(method for method in board["methods"] if method["name"] == "mine")["all"]["rates"]["answered"]
+    assert answered["hits"] == answered["total"] > 0, answered
+    assert cached.asked()["start"] > 1
+    assert json.loads((cached.folder / "changed/leaderboard.json").read_text()) != json.loads(
+        (cached.folder / "mine/leaderboard.json").read_text())
+
+
+def check_never_stale(cached):
+    """Another seed, study, solver or program has files of its own; --fresh makes them again."""
+    def new_files(what):
+        before = cached.files().keys()
+        what()
+        return len(cached.files().keys() - before)
+
+    assert new_files(lambda: cached.run("same")) == 0
+    assert new_files(lambda: cached.run("seed", "--seed", 6)) == 2 * len(CELLS)
+    cached.run("seed without", "--seed", 6, cache="off")
+    cached.check_same("seed", "seed without")
+    cached.suite(5, ("samples = 200", "samples = 210"))
+    assert new_files(lambda: cached.run("study")) == 2 * len(CELLS)
+    cached.suite(5)
+    assert new_files(lambda: cached.run("kernels", MPMBENCH_KERNELS="baseline")) == 2 * len(CELLS)
+    other = cached.folder / "mpmbench"
+    other.write_bytes(pathlib.Path(cached.program).read_bytes() + b"another build")
+    shutil.copymode(cached.program, other)
+    assert new_files(lambda: cached.run("program", program=other)) == 2 * len(CELLS)
+    cached.check_same("program", "without")
+    assert new_files(lambda: cached.run("fresh", "--fresh")) == 0
+    assert cached.times("fresh") != cached.times("same")
+    cached.check_same("fresh", "without")
+    cached.run("after fresh")
+    assert cached.times("after fresh") == cached.times("fresh")
+
+
+def check_compare(cached):
+    """Loops of a suite are known to `compare`, and those that it runs itself the next time."""
+    def compare(archive, output, *words, cache=None):
+        command = [cached.program, "compare", cached.folder / archive, "-o", cached.folder / output, "--jobs", 1, *words]
+        subprocess.run(list(map(str, command)), check=True, timeout=PATIENCE, capture_output=True,
+                       env={**os.environ, "MPMBENCH_CACHE": str(cache or cached.cache)})
+        return h5py.File(cached.folder / output)
+
+    for cell in CELLS:
+        archive, words = f"without/{cell}.h5", ["--methods", "order", *cached.methods(mine=1.0)]
+        compare(archive, "uncompared.h5", *words, cache="off")
+        asked = cached.asked()
+        for place in cached.cache, cached.folder / "empty":
+            times = []
+            for output in "compared.h5", "compared again.h5":
+                with compare(archive, output, *words, cache=place) as file:
+                    times.append(file["methods/order"].attrs["milliseconds"])
+                assert cached.asked() == asked
+                check_same(cached.folder / output, cached.folder / "uncompared.h5")
+            assert times[0] == times[1], times
+        with compare(archive, "compared.h5", *words, "--fresh") as file:
+            assert file["methods/order"].attrs["milliseconds"] != times[0]
+        cached.asked()
+    # What `compare` has left has no truth that a suite could take.
+    cached.run("after compare", cache=cached.folder / "empty")
+    cached.check_same("after compare", "without")
+
+
+def check_damage(cached):
+    """A file that is cut off, damaged or of somebody else is as none, and is made again."""
+    whole = cached.files().keys()
+    damages = [lambda bytes: bytes[:len(bytes) // 2], lambda bytes: b"", lambda bytes: b"of somebody else",
+               lambda bytes: bytes[:-200] + bytes(200), lambda bytes: bytes[:99] + b"\xff" + bytes[100:]]
+    for i, damage in enumerate(damages):
+        for path in cached.cache.iterdir():
+            path.write_bytes(damage(path.read_bytes()))
+        result = cached.run(f"damaged {i}")
+        assert "Traceback" not in result.stderr and "kept" not in result.stderr.replace("kept.toml", ""), result.stderr
+        cached.check_same(f"damaged {i}", "without")
+    assert cached.files().keys() == whole
+    cached.run("mended")
+    assert cached.times("mended") == cached.times(f"damaged {i}")
+
+
+def check_folder(cached):
+    """One that cannot be written costs one line; a limit holds; `cache` shows and clears it."""
+    blocked = cached.run("blocked", cache="/dev/null/cache")
+    assert blocked.stderr.count("not kept for the next run") == 1, blocked.stderr
+    cached.check_same("blocked", "without")
+    cached.run("quiet", "--quiet", cache=cached.folder / "none", MPMBENCH_CACHE_MB="0")
+    cached.check_same("quiet", "without")
+    shown = json.loads(cached.shown("--json"))
+    sizes = [path.stat().st_size for path in cached.cache.iterdir()]
+    assert shown == {"folder": str(cached.cache), "files": len(sizes), "bytes": sum(sizes), "limit": 2000000000,
+                     "cleared": False}, shown
+    assert f"{len(sizes)} files" in cached.shown()
+    assert "off" in cached.shown(MPMBENCH_CACHE="off")
+    (cached.cache / "mine.txt").write_text("not of the cache")
+    assert json.loads(cached.shown("--clear", "--json"))["files"] == len(sizes)
+    assert [path.name for path in cached.cache.iterdir()] == ["mine.txt"]
+    # Where the user has not said: the folder of caches, in the place that the system has for them.
+    home = {"MPMBENCH_CACHE": "", "HOME": "/nobody", "XDG_CACHE_HOME": ""}
+    assert cached.shown(**home).startswith("/nobody/.cache/mpmbench: 0 files")
+    assert cached.shown(**{**home, "XDG_CACHE_HOME": "/caches"}).startswith("/caches/mpmbench: 0 files")
+    wrong = subprocess.run([cached.program, "cache"], capture_output=True, text=True,
+                           env={**os.environ, "MPMBENCH_CACHE": "x", "MPMBENCH_CACHE_MB": "much"})
+    assert wrong.returncode == 2 and "MPMBENCH_CACHE_MB: found 'much'" in wrong.stderr, wrong
+
+
+def check_at_once(cached):
+    """Processes that use one cache at the same time."""
+    command = [cached.program, "suite", cached.folder / "kept.toml", "--jobs", "1", "--quiet", "-o"]
+    together = [subprocess.Popen(list(map(str, [*command, cached.folder / f"together {i}"])), stdout=subprocess.DEVNULL,
+                                 env={**os.environ, "MPMBENCH_CACHE": str(cached.cache)}) for i in range(3)]
+    assert [each.wait(PATIENCE) for each in together] == [0] * 3
+    for i in range(3):
+        cached.check_same(f"together {i}", "without")
+
+
+def main(program):
+    with tempfile.TemporaryDirectory() as folder:
+        cached = Cached(program, pathlib.Path(folder))
+        for check in (check_same_answers, check_changed_method, check_never_stale, check_compare, check_damage, check_folder,
+                      check_at_once):
+            check(cached)
+            print(check.__name__, "done", flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
