@@ -148,7 +148,7 @@ ProgramDescription description_of(const MethodProgram& program, WaitingPrograms&
   return description;
 }
 
-/// One thread's or worker's own.
+/// One thread's or worker's own, but for the process that it asks.
 class ProgramMethod final : public AssessmentMethod {
  public:
   ProgramMethod(const MethodProgram& program, const ProgramDescription& description,
@@ -163,23 +163,15 @@ class ProgramMethod final : public AssessmentMethod {
       told_.push_back({&assessment_method(name), shared_assessor(assessment_method(name), context)});
   }
 
-  ProgramMethod(const ProgramMethod&) = delete;
-  ProgramMethod& operator=(const ProgramMethod&) = delete;
-  ~ProgramMethod() override {
-    if (running_)
-      programs_->give_back(std::move(running_));
-  }
-
   Assessment assess(const AssessedLoop& loop) override {
     Json told = loop_json(loop);
     for (Told& each : told_)
       told["answers"][each.method->name] = answer_json(each.assessor->assess(loop), plant_, *each.method);
     Json answer;
-    std::unique_ptr<RunningProgram> running = std::move(running_);
     try {
-      if (!running)
-        running = begun();
+      std::unique_ptr<RunningProgram> running = begun();
       answer = running->talk.ask(question("loop", std::move(told)));
+      programs_->give_back(std::move(running));
     } catch (const ChildFailure& error) {
       throw InputError(fmt::format("method '{}'", program_.name), error.what(),
                        fmt::format("an answer within {} s", program_.time_limit));
@@ -187,7 +179,6 @@ class ProgramMethod final : public AssessmentMethod {
       programs_->end_all();
       throw;
     }
-    running_ = std::move(running);
     return assessment_of(answer, plant_, method_, fmt::format("method '{}'", program_.name));
   }
 
@@ -231,7 +222,6 @@ class ProgramMethod final : public AssessmentMethod {
   const Json context_;
   const std::string context_text_;
   std::vector<Told> told_;
-  std::unique_ptr<RunningProgram> running_;  ///< none before the first loop, and after one that failed
 };
 
 }  // namespace
