@@ -234,7 +234,8 @@ OptionKeys analysis_keys(Study& study) {
               "what an error in the nominal sensitivity costs")
               .otherwise("none: S0 is not perturbed"),
           key::table(
-              "diagnosis", [&study] { return diagnosis_keys(study.diagnosis, study.assessment.of<ChainOptions>()); },
+              "diagnosis",
+              [&study] { return diagnosis_keys(study.diagnosis, study.assessment.of<ChainOptions>()); },
               "the open choices of the diagnosis")};
 }
 

@@ -23,14 +23,12 @@ std::size_t aligned_note(std::size_t size) {
 std::string identifier_in(std::string_view notes) {
   while (notes.size() > sizeof(ElfW(Nhdr))) {
     ElfW(Nhdr) head;
-    notes.copy(reinterpret_cast<char*>(&head),
-               sizeof head);  // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
+    notes.copy(reinterpret_cast<char*>(&head), sizeof head);
     notes.remove_prefix(sizeof head);
     const std::size_t name = aligned_note(head.n_namesz);
     if (name + aligned_note(head.n_descsz) > notes.size())
       return "";
-    if (head.n_type == NT_GNU_BUILD_ID &&
-        notes.substr(0, head.n_namesz) == std::string_view(ELF_NOTE_GNU, 4)) {
+    if (head.n_type == NT_GNU_BUILD_ID && notes.starts_with(ELF_NOTE_GNU)) {
       std::string digits;
       for (const char byte : notes.substr(name, head.n_descsz))
         digits += fmt::format("{:02x}", static_cast<unsigned char>(byte));
@@ -51,12 +49,12 @@ std::string state_of_file(const std::filesystem::path& file) {
 int add_object(dl_phdr_info* object, std::size_t, void* to) {
   std::string identifier;
   for (std::size_t i = 0; i < object->dlpi_phnum && identifier.empty(); ++i) {
-    const ElfW(Phdr)& segment =
-        object->dlpi_phdr[i];  // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
-    if (segment.p_type == PT_NOTE)
-      identifier =
-          identifier_in(  // NOLINTNEXTLINE(performance-no-int-to-ptr,cppcoreguidelines-pro-type-reinterpret-cast)
-              {reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr), segment.p_memsz});
+    const ElfW(Phdr)& segment = object->dlpi_phdr[i];
+    if (segment.p_type != PT_NOTE)
+      continue;
+    // The loader gives addresses as numbers. NOLINTNEXTLINE(performance-no-int-to-ptr)
+    const auto* const notes = reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr);
+    identifier = identifier_in({notes, segment.p_memsz});
   }
   *static_cast<std::string*>(to) +=
       (identifier.empty() ? state_of_file(object->dlpi_name) : identifier) + "\n";

@@ -14,11 +14,11 @@ namespace {
 constexpr std::uint64_t kLargestRatio = 1040;
 
 const Bytef* zlib_bytes(std::string_view text) {
-  return reinterpret_cast<const Bytef*>(text.data());  // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
+  return reinterpret_cast<const Bytef*>(text.data());
 }
 
 Bytef* zlib_bytes(std::string& text, std::size_t from) {
-  return reinterpret_cast<Bytef*>(text.data() + from);  // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
+  return reinterpret_cast<Bytef*>(text.data() + from);
 }
 
 }  // namespace

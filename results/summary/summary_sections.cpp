@@ -226,11 +226,10 @@ Table findings_table(const Study& study, const StudyFindings& findings) {
 }
 
 Table dominance_table(const Study& study, const std::vector<DominanceBin>& bins) {
-  Table table("I_{MPM} by dominance of the mismatch.",
-              {{"dominance", Table::Align::left},
-               {"mean"},
-               {"count"},
-               {fmt::format("above {:g}", mpm_threshold(study))}});
+  Table table("I_{MPM} by dominance of the mismatch.", {{"dominance", Table::Align::left},
+                                                        {"mean"},
+                                                        {"count"},
+                                                        {fmt::format("above {:g}", mpm_threshold(study))}});
   for (const DominanceBin& bin : bins)
     table.row({fmt::format("{:g} to {:g}", bin.lower, bin.upper),
                fixed(bin.i_mpm.mean, bin.i_mpm.mean_interval), bin.i_mpm.count, number(bin.above_threshold)});
