@@ -78,7 +78,7 @@ struct AreaRow : MethodNumber {
 std::span<const AreaRow> area_rows();
 
 inline constexpr MethodNumber kRunTime{"milliseconds", "ms a loop",
-                                            "median processor time of its verdict on a loop, in ms", true};
+                                       "median processor time of its verdict on a loop, in ms", true};
 
 /// Every number of a method once.
 std::vector<MethodNumber> method_numbers();

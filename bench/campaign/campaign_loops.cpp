@@ -100,8 +100,6 @@ RunOptions calibration_options(RunOptions options) {
   return options;
 }
 
-}
-
 CampaignLoops::CampaignLoops(Study study, RunOptions options)
     : study_(std::move(study)),
       options_(std::move(options)),

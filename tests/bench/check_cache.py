@@ -153,20 +153,20 @@ def check_same_answers(cached):
 def check_changed_method(cached):
     """A program is started once for each thread and asked about every loop; a change of it asks nothing else."""
     words = ["--jobs", 1, "--join", "none", "--methods", "sse"]
-    cached.run("mine without", *words, *cached.methods(mine=1.0, other=2.0), cache="off")
+    cached.run("mine without", *words, *cached.methods(mine=0.0, other=2.0), cache="off")
     before = cached.asked()
     assert before["start"] == before["describe"] == 2, before
     # Each is told the contexts of the cell with both faults, of the two worlds, and of a controller that is changed.
     assert before["context"] < before["loop"] / 2, before
     kept = cached.files()
-    cached.run("mine", *words, *cached.methods(mine=1.0, other=2.0))
+    cached.run("mine", *words, *cached.methods(mine=0.0, other=2.0))
     assert cached.asked() == before
     cached.check_same("mine", "mine without")
-    cached.run("changed", *words, *cached.methods(mine=1.5, other=2.0))
+    cached.run("changed", *words, *cached.methods(mine=1e9, other=2.0))
     assert cached.asked() == before
     assert cached.times("changed") == cached.times("mine")
     assert cached.files().keys() == kept.keys()
-    cached.run("changed without", *words, *cached.methods(mine=1.5, other=2.0), cache="off")
+    cached.run("changed without", *words, *cached.methods(mine=1e9, other=2.0), cache="off")
     cached.check_same("changed", "changed without")
     # One that bears no second context is started anew for it.
     board = json.loads(cached.run("strict", *words, *cached.methods(mine="1.0, strict = true")).stdout)

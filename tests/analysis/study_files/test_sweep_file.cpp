@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <unistd.h>
 
+#include "analysis/indicators/diagnosis.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/sweep_file.hpp"
 #include "base/error.hpp"
@@ -74,7 +75,7 @@ TEST_CASE("a variant is the base study with some keys laid over", "[sweep_file]"
 
 TEST_CASE("a table that the base study does not have is added", "[sweep_file]") {
   const SweepFolder folder(kVariant + "set.diagnosis.mpm_threshold = 0.2\n");
-  CHECK(load_sweep(folder.file()).variants[1].mpm_threshold(study) == 0.2);
+  CHECK(mpm_threshold(load_sweep(folder.file()).variants[1].study) == 0.2);
 }
 
 TEST_CASE("what is no sweep is refused by its key", "[sweep_file]") {
