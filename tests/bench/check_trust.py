@@ -84,7 +84,7 @@ def main(program, fmu, chapter5):
         archive_words = re.compile(r"^  (ARCHIVE|PARTS)\b", re.MULTILINE)
         takes = {each for each in listed if archive_words.search(run(each, "--help").stdout)}
         assert len(listed) > 12 and takes and takes <= set(COMMANDS), (listed, takes)
-        assert listed - set(COMMANDS) <= OF_A_STUDY | {"list", "manual", "completion", "methods", "show"}, listed
+        assert listed - set(COMMANDS) <= OF_A_STUDY | {"cache", "list", "manual", "completion", "methods", "show"}, listed
 
         (folder / "gates.toml").write_text('[[gate]]\nfinding = "experiments"\nmin = 0\n')
         for kind, shown, text, channel in studies(folder, fmu, chapter5):

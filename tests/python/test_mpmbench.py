@@ -286,12 +286,13 @@ class Hostile(unittest.TestCase):
 
     def test_texts_of_others_are_texts_in_a_notebook(self):
         rate = {"value": 0.5, "lower": 0.4, "upper": 0.6, "hits": 1, "total": 2}
-        method = {"name": HOSTILE, "rates": {"answered": rate}, "all": {"rates": {"answered": rate}}}
+        method = {"name": HOSTILE, "rates": {"answered": rate}, "estimates": {}, "all": {"rates": {"answered": rate}}}
+        numbers = {"columns": ["answered"], "headings": {"answered": HOSTILE}}
         axis = [{"name": HOSTILE, "title": HOSTILE}]
         board = {"suite": HOSTILE, "version": HOSTILE, "title": HOSTILE, "seed": 1, "plants": axis, "families": axis,
-                 "cells": [{"experiments": 2}], "methods": [method], "own": [HOSTILE], "standing": {HOSTILE: {"says": HOSTILE}}}
+                 "cells": [{"experiments": 2}], "methods": [method], "own": [HOSTILE], "standing": {HOSTILE: {"says": HOSTILE}}, **numbers}
         self.check(mpmbench.Board(json.dumps(board))._repr_html_())
-        self.check(mpmbench.Comparison(json.dumps({"methods": [method]}), archive, [HOSTILE], {})._repr_html_())
+        self.check(mpmbench.Comparison(json.dumps({"methods": [method], **numbers}), archive, [HOSTILE], {})._repr_html_())
         self.check(mpmbench.Assessment(json.dumps({"found": HOSTILE, "verdict": [HOSTILE] * 3}), None, None)._repr_html_())
         opened = mpmbench.open("a.h5")
         opened.experiments = opened.experiments.assign(kind=("experiment", [HOSTILE] * 20))
