@@ -7,10 +7,10 @@ namespace {
 
 using Kind = ExperimentKind;
 
-constexpr bool judged(Correctness verdict) {
+constexpr bool is_judged(Correctness verdict) {
   return verdict != Correctness::not_judged;
 }
-constexpr bool right(Correctness verdict) {
+constexpr bool is_right(Correctness verdict) {
   return verdict == Correctness::right;
 }
 
@@ -57,29 +57,29 @@ constexpr std::array<RateRow, 24> kRates{{
      [](const JudgedLoop& l) { return l.said.right_source; }},
     {{"channel", "Channel named",
       "share of the flagged loops with one mismatch of an MV in which its channel is named"},
-     [](const JudgedLoop& l) { return l.said.flagged && judged(l.said.channel); },
-     [](const JudgedLoop& l) { return right(l.said.channel); }},
+     [](const JudgedLoop& l) { return l.said.flagged && is_judged(l.said.channel); },
+     [](const JudgedLoop& l) { return is_right(l.said.channel); }},
     {{"channel_impact", "Channel named, impact",
       "share of the loops with one mismatch of an MV that has an impact in which the loop is flagged and the "
       "channel is named"},
-     [](const JudgedLoop& l) { return l.truth.impact && judged(l.said.channel); },
-     [](const JudgedLoop& l) { return right(l.said.channel); }},
+     [](const JudgedLoop& l) { return l.truth.impact && is_judged(l.said.channel); },
+     [](const JudgedLoop& l) { return is_right(l.said.channel); }},
     {{"parameter_impact", "Parameter named, impact",
       "share of the loops with one mismatch of an MV that has an impact in which the loop is flagged and the "
       "method is surest of the right channel and parameter"},
-     [](const JudgedLoop& l) { return l.truth.impact && judged(l.said.parameter); },
-     [](const JudgedLoop& l) { return right(l.said.parameter); }},
+     [](const JudgedLoop& l) { return l.truth.impact && is_judged(l.said.parameter); },
+     [](const JudgedLoop& l) { return is_right(l.said.parameter); }},
     {{"size_covered", "Size in its interval",
       "share of the flagged loops with one mismatch of an MV whose channel and parameter are named in which "
       "the interval of the size holds the true size"},
-     [](const JudgedLoop& l) { return judged(l.said.size); },
-     [](const JudgedLoop& l) { return right(l.said.size); }},
+     [](const JudgedLoop& l) { return is_judged(l.said.size); },
+     [](const JudgedLoop& l) { return is_right(l.said.size); }},
     {{"candidate", "Cause named",
       "share of the flagged loops with a disturbance that a logged signal drives in which the method names "
       "this signal",
       false, StudyFeature::candidates},
-     [](const JudgedLoop& l) { return judged(l.said.candidate); },
-     [](const JudgedLoop& l) { return right(l.said.candidate); }},
+     [](const JudgedLoop& l) { return is_judged(l.said.candidate); },
+     [](const JudgedLoop& l) { return is_right(l.said.candidate); }},
     {{"source_all", "Source, all faults",
       "share of all loops with a fault, with or without verdict, that are flagged with the right source: "
       "mismatch, disturbance or both; for another fault, `other` or none"},
@@ -132,8 +132,8 @@ constexpr std::array<RateRow, 24> kRates{{
       "share of the loops with a fault that has an impact in which a window that ends after the onset is "
       "flagged",
       false, StudyFeature::monitoring},
-     [](const JudgedLoop& l) { return judged(l.said.window); },
-     [](const JudgedLoop& l) { return right(l.said.window); }},
+     [](const JudgedLoop& l) { return is_judged(l.said.window); },
+     [](const JudgedLoop& l) { return is_right(l.said.window); }},
 }};
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -68,8 +68,12 @@ const Row& row_of(std::span<const Row> rows, std::string_view name) {
 
 /// Those that this study can have.
 template <class Row>
-auto rows_for(const Study& study, std::span<const Row> rows) {
-  return rows | std::views::filter([&study](const Row& row) { return has_feature(study, row.of); });
+std::vector<std::reference_wrapper<const Row>> rows_for(const Study& study, std::span<const Row> rows) {
+  std::vector<std::reference_wrapper<const Row>> found;
+  for (const Row& row : rows)
+    if (has_feature(study, row.of))
+      found.emplace_back(row);
+  return found;
 }
 
 /// A value for each of these rows, which must outlive it.

@@ -183,7 +183,7 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
       return
           [this, fall_back, memory, worker = std::make_shared<ThreadWorker<CampaignWorker>>(make, fall_back)](
               std::int64_t key) -> LoopResult {
-            const LoopResult for_process{.bytes = "", .unfinished = true};
+            LoopResult for_process{.bytes = "", .unfinished = true};
             const std::optional<LoopResult> done = worker->run([&](CampaignWorker& each) {
               if (std::optional<KnownLoop> known = known_in(memory, key))
                 return known->by_process && !known->unheard.empty()

@@ -159,7 +159,7 @@ class Revisit {
 
   /// One that failed may have needed Ipopt.
   LoopResult calibrated(std::int64_t key, const LoopPlace& place, LoopRunners& runners) const {
-    const LoopResult none{.bytes = "", .unfinished = true};
+    LoopResult none{.bytes = "", .unfinished = true};
     if (std::optional<KnownLoop> known = known_calibration(key))
       return known->by_process && !known->unheard.empty()
                  ? none

@@ -104,7 +104,7 @@ TEST_CASE("comparison JSON: every rate, curve and pair, the same numbers as the 
     const Json& of_json = json["methods"][m];
     CHECK(of_json["name"] == findings.methods[m].name());
     CHECK(of_json["reason"] == rates.reason);
-    CHECK(std::ssize(of_json["rates"]) == std::ranges::distance(rows_for(campaign.study, rate_rows())));
+    CHECK(of_json["rates"].size() == rows_for(campaign.study, rate_rows()).size());
     for (const RateRow& row : rows_for(campaign.study, rate_rows())) {
       const Rate& rate = rates.rates.of(row);
       const Json& share = of_json["rates"][row.name];
