@@ -53,7 +53,8 @@ struct OutcomeFact {
 /// Every member once. Files keep them in this order: a further fact goes to the end.
 std::vector<OutcomeFact> outcome_facts();
 
-/// Of a loop that did not run to its end, which no method has looked at: none.
+/// One a loop, in the order of the loops; none for a loop that did not run to its end, at which no method has
+/// looked.
 using LoopTruths = std::vector<std::optional<FaultTruth>>;
 using LoopOutcomes = std::vector<std::optional<LoopOutcome>>;
 

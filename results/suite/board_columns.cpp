@@ -57,7 +57,7 @@ std::string latex_text(const std::string& text) {
 }
 
 /// A heading in two lines, broken at the space next to its middle, so that the table fits a page:
-/// "\\shortstack[r]{Healthy flagged,\\\\calibrated}"
+/// "\shortstack[r]{Healthy,\\calibrated}"
 std::string latex_heading(const std::string& heading) {
   std::size_t best = std::string::npos;
   const auto off = [&heading](std::size_t place) {

@@ -63,8 +63,7 @@ Table methods_table(const Leaderboard& board, std::string caption, const std::ve
   return table;
 }
 
-/// Of the number of this name, with a column for each plant or family, and one for all of them; `cell` makes
-/// the entries from the scores.
+/// With a column for each plant or family, and one for all of them; `cell` makes the entries from the scores.
 Table axis_table(const Leaderboard& board, std::string caption, const std::vector<SuiteAxis>& axis,
                  const AllScores& scores, const auto& cell) {
   std::vector<std::string> heads;
