@@ -28,7 +28,6 @@ struct ControlMove {
   double kkt_residual = 0.0;  ///< the larger of the two problems' residuals
   int iterations = 0;         ///< of the solver, both problems
   int fallbacks = 0;          ///< problems whose answer is Ipopt's, see CertifiedSolver
-  int uncertified = 0;        ///< problems that are solved, but not certified (QpSolver)
 };
 
 /// Whoever decides on the MVs of a loop: the Mpc of this program, or somebody else's. y(k) and d(k) are

@@ -211,7 +211,6 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
   move_.kkt_residual = 0.0;
   move_.iterations = 0;
   move_.fallbacks = 0;
-  move_.uncertified = 0;
   if (!targets_ || solve_targets())
     solve_moves();
   input_.head(nu_) = move_.u;
@@ -246,7 +245,6 @@ void Mpc::note(const QpResult& answer) {
   move_.status = control_status(answer.status);
   move_.iterations += answer.iterations;
   move_.fallbacks += answer.from_ipopt ? 1 : 0;
-  move_.uncertified += answer.status == QpStatus::solved && !answer.certified ? 1 : 0;
 }
 
 bool Mpc::solve_targets() {

@@ -36,7 +36,6 @@ class StepCounter {
     statistics_.fallbacks += result.from_ipopt ? 1 : 0;
     if (result.status != QpStatus::solved)
       return;
-    statistics_.uncertified += result.certified ? 0 : 1;
     statistics_.largest_kkt_residual = std::max(statistics_.largest_kkt_residual, result.kkt_residual);
   }
 

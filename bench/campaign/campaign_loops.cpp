@@ -205,8 +205,10 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
                     worker = std::make_shared<CampaignWorker>(
                         *this, basis, qp_solver_factory(options_.solver), memory != nullptr)](
                        std::int64_t key, const std::string& begun) {
-      if (std::optional<KnownLoop> known = known_in(memory, key))
+      if (std::optional<KnownLoop> known = known_in(memory, key)) {
+        known->by_process = true;  // the answers that are new are a process's
         return heard_result(key, *std::move(known), worker->work(key));
+      }
       ExperimentOutcome outcome = begun.empty() ? worker->run(key) : bytes(key).from_bytes(begun);
       worker->experiments.audit(outcome);
       return kept_result(key, std::move(outcome), memory, true);

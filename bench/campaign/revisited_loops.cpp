@@ -174,8 +174,10 @@ class Revisit {
     const LoopPlace place = loops_.place(key);
     if (!place.of_calibration)
       return assessed(key, runners.experiments, bytes_.from_bytes(begun), true);
-    if (std::optional<KnownLoop> known = known_calibration(key))
+    if (std::optional<KnownLoop> known = known_calibration(key)) {
+      known->by_process = true;  // the answers that are new are a process's
       return heard(key, *runners.calibration, *std::move(known));
+    }
     return made(key, *runners.calibration,
                 {.record = runners.calibration->run(place.index, calibration_store()), .by_process = true});
   }
@@ -193,8 +195,10 @@ class Revisit {
                       bool by_process) const {
     if (loops_.memory == nullptr || record.loop || record.status != ExperimentStatus::ok)
       return loops_.make(key, runner, std::move(record));
-    if (std::optional<KnownLoop> known = loops_.memory->find_same(key, record))
+    if (std::optional<KnownLoop> known = loops_.memory->find_same(key, record)) {
+      known->by_process |= by_process;
       return heard(key, runner, *std::move(known));
+    }
     KnownLoop loop{.record = std::move(record), .has_truth = false, .by_process = by_process};
     loop.record.loop = {runner.simulated(loop.record.draw), {}};
     loop.record.assessments = runner.assess(loop.record);

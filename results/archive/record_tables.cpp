@@ -590,8 +590,7 @@ RecordTable perturbed(const Study& study) {
                    &PerturbedIvar::damping)}};
 }
 
-// A member more in one of these and this does not compile: it is then to be added to a table above. Not in
-// one is `uncertified`, which no archive keeps.
+// A member more in one of these and this does not compile: it is then to be added to a table above.
 [[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
                                                  const LoopRecord& loop, const LoopTruth& truth,
                                                  const SolverStatistics& statistics) {
@@ -608,7 +607,7 @@ RecordTable perturbed(const Study& study) {
   [[maybe_unused]] const auto& [v, y_d, mpm_alone, ud_alone] = truth;
   [[maybe_unused]] const auto& [loop_status, samples_done, y, u, u_target, d, y_set, of_loop, failure, what] =
       trajectory;
-  [[maybe_unused]] const auto& [steps, iterations, fallbacks, uncertified, residual] = statistics;
+  [[maybe_unused]] const auto& [steps, iterations, fallbacks, residual] = statistics;
 }
 
 }  // namespace

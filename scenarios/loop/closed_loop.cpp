@@ -166,7 +166,6 @@ void SolverStatistics::add(const SolverStatistics& other) {
   steps += other.steps;
   iterations += other.iterations;
   fallbacks += other.fallbacks;
-  uncertified += other.uncertified;
   largest_kkt_residual = std::max(other.largest_kkt_residual, largest_kkt_residual);  // keeps a NaN
 }
 
@@ -222,7 +221,6 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     trajectory.solver.steps += 1;
     trajectory.solver.iterations += move.iterations;
     trajectory.solver.fallbacks += move.fallbacks;
-    trajectory.solver.uncertified += move.uncertified;
     if (observer)
       observer(controller);
     trajectory.status = move.status;

@@ -22,7 +22,6 @@ struct SolverStatistics {
   std::int64_t steps = 0;
   std::int64_t iterations = 0;
   std::int64_t fallbacks = 0;         ///< problems whose answer is Ipopt's (CertifiedSolver)
-  std::int64_t uncertified = 0;       ///< solved, but not certified (QpSolver); kept in no archive
   double largest_kkt_residual = 0.0;  ///< NaN: of answers that nobody can certify
 
   void add(const SolverStatistics& other);
