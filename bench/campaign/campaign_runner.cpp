@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "analysis/basis/basis_runs.hpp"
-#include "analysis/methods/method_table.hpp"
 #include "base/system/surroundings.hpp"
 #include "bench/cache/loop_memory.hpp"
 #include "bench/campaign/campaign_loops.hpp"
@@ -21,7 +20,7 @@
 #include "bench/files/outside_files.hpp"
 #include "bench/shards/shard_folder.hpp"
 #include "bench/version.hpp"
-#include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/world.hpp"
 #include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
@@ -33,21 +32,19 @@ void require_health(const BasisCase& basis, const RunOptions& options) {
   throw UnhealthyBasis("the basis case of the study fails its self-check: " + basis.explanation);
 }
 
-/// The keys in the order in which their loops are run: where programs assess, those of a world one after the
-/// other, so that a program is told the benchmark of each once.
+/// The world of a loop.
+int world_of(const CampaignLoops& loops, std::int64_t key) {
+  return world_of(key < kCalibrationKeys ? loops.study() : loops.calibration(), key % kCalibrationKeys);
+}
+
+/// The keys in the order in which their loops are run: those of a world one after the other, so that its
+/// benchmark is learnt from, and a program is told it, once.
 std::vector<std::int64_t> in_turn(const CampaignLoops& loops, std::vector<std::int64_t> keys) {
-  const Study& study = loops.study();
-  const bool asks_programs =
-      std::any_of(study.methods.begin(), study.methods.end(), [&study](const std::string& method) {
-        return !method_table(study.assessment).method(method).origin.empty();
-      });
-  if (!study.world || !asks_programs)
+  if (!loops.study().world)
     return keys;
   std::vector<std::pair<int, std::int64_t>> by_world;
-  for (const std::int64_t key : keys) {
-    const Study& of = key < kCalibrationKeys ? study : loops.calibration();
-    by_world.emplace_back(draw_experiment(of, key % kCalibrationKeys).world, key);
-  }
+  for (const std::int64_t key : keys)
+    by_world.emplace_back(world_of(loops, key), key);
   std::sort(by_world.begin(), by_world.end());
   std::transform(by_world.begin(), by_world.end(), keys.begin(),
                  [](const auto& each) { return each.second; });
@@ -67,6 +64,8 @@ BasisCase run_loops(const CampaignLoops& loops, ShardStore& store, const std::ve
   work.stop = hooks.stop;
   work.on_start = hooks.on_start;
   work.on_done = hooks.on_done;
+  if (loops.study().world)  // experiments and calibration loops have benchmarks of their own
+    work.group = [&loops](std::int64_t key) { return 2 * world_of(loops, key) + (key < kCalibrationKeys); };
   const KeepAtEnd keeper(memory ? &*memory : nullptr, hooks.on_warning);
   run_missing(store, in_turn(loops, keys), work);
   return basis;

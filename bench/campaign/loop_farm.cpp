@@ -26,6 +26,12 @@ namespace {
 /// so that waiting for the last one is little, and no more than a killed run may lose.
 constexpr std::chrono::seconds kRound(2);
 constexpr std::int64_t kMostInRound = 100'000;
+/// Of the loops of a round: the most that a thread takes together, with so many threads.
+std::size_t most_together(std::size_t count, int threads) {
+  constexpr std::size_t kTurns = 4;  // of each thread at least, so that none waits long for the last one
+  return std::max<std::size_t>(1, count / (kTurns * static_cast<std::size_t>(threads)));
+}
+
 /// How many loops may wait for worker processes: each may hold a record.
 constexpr std::size_t kMostWaiting = 1000;
 
@@ -109,7 +115,7 @@ class LoopFarm {
     using RoundClock = std::chrono::steady_clock;
     const RoundClock::time_point end = pool_ ? RoundClock::now() + kRound : RoundClock::time_point::max();
     std::vector<char> is_left_out(count, 0);
-    for_each_in_threads(count, work_.jobs, [&](std::size_t i, std::size_t thread) {
+    const auto run_one = [&](std::size_t i, std::size_t thread) {
       if (requested(work_.stop) || RoundClock::now() >= end || count_waiting_ >= kMostWaiting) {
         is_left_out[i] = 1;
         return;
@@ -127,6 +133,11 @@ class LoopFarm {
       else
         deliver(key, std::move(result));
       count_waiting_ = waiting_.size();
+    };
+    const std::vector<std::size_t> ends = ends_of_groups(count);
+    for_each_in_threads(ends.size(), work_.jobs, [&](std::size_t group, std::size_t thread) {
+      for (std::size_t i = group == 0 ? 0 : ends[group - 1]; i < ends[group]; ++i)
+        run_one(i, thread);
     });
     std::vector<std::int64_t> left_out;
     for (std::size_t i = 0; i < count; ++i)
@@ -134,6 +145,19 @@ class LoopFarm {
         left_out.push_back(missing_[next_ + i]);
     next_ += count - left_out.size();
     std::copy(left_out.begin(), left_out.end(), missing_.begin() + static_cast<std::ptrdiff_t>(next_));
+  }
+
+  /// Of the next `count` loops: where those end that a thread takes together.
+  std::vector<std::size_t> ends_of_groups(std::size_t count) const {
+    const std::size_t most = work_.group ? most_together(count, work_.jobs) : 1;
+    std::vector<std::size_t> ends;
+    for (std::size_t i = 0, first = 0; i < count; ++i)
+      if (i + 1 == count || i + 1 - first == most ||
+          work_.group(missing_[next_ + i]) != work_.group(missing_[next_ + i + 1])) {
+        ends.push_back(i + 1);
+        first = i + 1;
+      }
+    return ends;
   }
 
   /// Has worker processes do what is waiting, and what `more` gives, unless it is to stop.

@@ -28,6 +28,9 @@ struct LoopWork {
   /// Makes what one of the threads works with, before the first of them starts. Empty: every loop runs in a
   /// worker process.
   std::function<Thread()> thread = {};
+  /// Threads take neighbours of one group together, as far as that keeps all of them busy: what a thread
+  /// learns for one loop serves the others. Empty: loops have nothing in common.
+  std::function<std::int64_t(std::int64_t key)> group = {};
   /// What a worker process does with a loop, of which a thread has `begun` bytes or nothing. Empty: threads
   /// finish every loop.
   std::function<LoopResult(std::int64_t key, const std::string& begun)> process = {};
