@@ -337,12 +337,15 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--count", type=int, default=20)
+    parser.add_argument("--count-of-all", type=int, help="--count of ./test.sh --all")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--patience", type=float, default=120.0)
     parser.add_argument("--keep", type=pathlib.Path, default=pathlib.Path("random-studies"))
     parser.add_argument("--log", type=pathlib.Path)
     parser.add_argument("--lean", action="store_true")
     options = parser.parse_args()
+    if options.count_of_all and "MPMBENCH_TEST_ALL" in os.environ:
+        options.count = options.count_of_all
     options.program = os.path.abspath(options.program)
     os.environ["MPMBENCH_PROGRAM"] = options.program
     tables = drawn_keys.tables_of(options.program)

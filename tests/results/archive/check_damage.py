@@ -3,6 +3,7 @@
 usage: check_damage.py WRITER READER
 """
 
+import os
 import pathlib
 import shutil
 import subprocess
@@ -232,12 +233,13 @@ def main(writer, reader_program):
         known = damage.missing_objects()
         damage.wrong_objects()
         damage.wrong_answers()
-        damage.random_values(60)
+        thorough = "MPMBENCH_TEST_ALL" in os.environ
+        damage.random_values(600 if thorough else 40)
         subprocess.run([writer, whole, "scenarios"], check=True)
         assert damage.after(lambda file: None) is None
         assert len(damage.missing_objects(known) - known) > 100
         damage.wrong_scenarios()
-        damage.random_values(40)
+        damage.random_values(400 if thorough else 20)
 
 
 if __name__ == "__main__":
