@@ -158,9 +158,9 @@ Figure comparison_roc_figure(const Methods& methods, FlagTruth truth) {
     draw_curve(panel, curve, curve_pen(m));
     const Interval& area =
         truth == FlagTruth::fault ? methods[m].rates.roc_area : methods[m].rates.roc_impact_area;
-    figure.legend.push_back(
-        {fmt::format("{}, area {:.3f}{}", methods[m].name(), curve.area, interval_words(area, 3)),
-         method_pen(m)});
+    figure.legend.push_back({fmt::format("{}, area {:.3f}{}, {} and {} loops", methods[m].name(), curve.area,
+                                         interval_words(area, 3), curve.positives, curve.negatives),
+                             method_pen(m)});
   }
   for (std::size_t m = 0; m < methods.size() && truth == FlagTruth::fault; ++m)
     if (methods[m].rates.roc.defined())

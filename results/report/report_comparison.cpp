@@ -22,7 +22,7 @@ std::string rates_legend(const Study& study) {
   for (const MethodNumber& number : method_numbers())
     if (has_feature(study, number.of))
       words += fmt::format("{}: {}. ", strong(number.heading), as_label(number.meaning));
-  return words + strong("False alarms stated") + ": share of healthy loops that the method claims to flag.";
+  return words + strong(kStatedAlarmsHeading) + ": share of healthy loops that the method claims to flag.";
 }
 
 Table methods_table(const Methods& methods) {

@@ -15,7 +15,8 @@ const MethodFindings* best_method(const StudyFindings& findings, std::string_vie
 /// Is there a method that was right or wrong on some loop?
 bool was_judged(const StudyFindings& findings);
 
-/// Words: which method finds the CV, the source and the channel most often; empty where no loop was judged.
+/// Words: which method finds the CV, the source and the channel most often, and what the methods find that
+/// are programs of the user; empty where no loop was judged.
 std::string comparison_answer(const StudyFindings& findings);
 
 /// The rates that matter most, of those that some loop counts for.
@@ -37,6 +38,9 @@ Document comparison_document(const Campaign& campaign, const StudyFindings& find
 
 /// These data.
 void put_comparison(nlohmann::ordered_json& json, const Campaign& campaign, const StudyFindings& findings);
+
+/// Of the share of healthy loops that a method claims to flag (MethodDescription::stated_false_alarms).
+inline constexpr const char* kStatedAlarmsHeading = "False alarms stated";
 
 /// The rates that were counted on some loop of some method; the others are empty rows and panels.
 std::vector<const RateRow*> counted_rates(const std::vector<MethodFindings>& methods);

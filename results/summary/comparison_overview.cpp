@@ -28,6 +28,40 @@ bool is_counted(const StudyFindings& findings, std::string_view rate) {
                      [rate](const MethodFindings& method) { return method.rates[rate].total > 0; });
 }
 
+/// Methods by the first of these rates that some loop counts for, the best one first.
+constexpr std::string_view kRankedBy[] = {"source_05_impact", "source", "power_05_impact", "detected_impact"};
+
+std::vector<const MethodFindings*> by_rank(const StudyFindings& findings) {
+  std::vector<const MethodFindings*> methods;
+  for (const MethodFindings& method : findings.methods)
+    methods.push_back(&method);
+  for (const std::string_view rate : kRankedBy) {
+    if (!is_counted(findings, rate))
+      continue;
+    const auto value = [rate](const MethodFindings* method) {
+      return method->rates[rate].total > 0 ? method->rates[rate].value : -1.0;
+    };
+    std::stable_sort(methods.begin(), methods.end(),
+                     [&value](const auto* one, const auto* other) { return value(one) > value(other); });
+    break;
+  }
+  return methods;
+}
+
+/// What a reader who brings methods asks first; empty where none is his own.
+std::string own_methods_words(const StudyFindings& findings) {
+  std::string text;
+  for (const MethodFindings* const method : by_rank(findings))
+    if (!method->form->method().origin.empty() && method->rates["detected"].total > 0)
+      text += fmt::format(" {} flags {} of the faults{}.", code(as_label(method->name())),
+                          share_words(method->rates["detected"]),
+                          method->rates["false_alarm_healthy"].total == 0
+                              ? ""
+                              : fmt::format(" and {} of the healthy loops",
+                                            share_words(method->rates["false_alarm_healthy"])));
+  return text;
+}
+
 /// "96 [90, 99]", with a mark for a method that answers on a part of the loops only.
 Cell overview_cell(const MethodRates& rates, std::string_view name) {
   const Rate& rate = rates[name];
@@ -72,14 +106,17 @@ std::string comparison_answer(const StudyFindings& findings) {
   best("the CV is found most often", "located");
   best("the source", "source");
   best("the channel", "channel");
+  const std::string own = own_methods_words(findings);
   if (text.empty())
     return was_judged(findings)
-               ? "No method both answers nearly always and detects most faults, so none is called best."
+               ? "No method both answers nearly always and detects most faults, so none is called best." + own
                : "";
   text.front() = 'T';
-  return text + (is_counted(findings, "false_alarm_healthy")
-                     ? ". The table shows the false alarms that each one costs."
-                     : ". No loop was healthy, so nothing is known of false alarms.");
+  return text +
+         (is_counted(findings, "false_alarm_healthy")
+              ? ". The table shows the false alarms that each one costs."
+              : ". No loop was healthy, so nothing is known of false alarms.") +
+         own;
 }
 
 Section comparison_overview(const Campaign& campaign, const StudyFindings& findings) {
@@ -102,17 +139,17 @@ Section comparison_overview(const Campaign& campaign, const StudyFindings& findi
   table.columns.push_back({kRunTime.heading});
   bool in_part = false;
   std::vector<std::string> silent;
-  for (const MethodFindings& method : findings.methods) {
-    if (method.rates["answered"].hits == 0) {
-      silent.push_back(method.name());
+  for (const MethodFindings* const method : by_rank(findings)) {
+    if (method->rates["answered"].hits == 0) {
+      silent.push_back(method->name());
       continue;
     }
-    std::vector<Cell> cells{as_label(method.name())};
+    std::vector<Cell> cells{as_label(method->name())};
     for (const std::string& column : columns)
-      cells.push_back(overview_cell(method.rates, column));
-    cells.emplace_back(Number{method.rates.milliseconds});
+      cells.push_back(overview_cell(method->rates, column));
+    cells.emplace_back(Number{method->rates.milliseconds});
     table.row(std::move(cells));
-    in_part = in_part || method.rates["answered"].value < kFewestAnswers;
+    in_part = in_part || method->rates["answered"].value < kFewestAnswers;
   }
   if (!table.rows.empty())
     section.add(std::move(table));

@@ -65,7 +65,7 @@ Table rates_table(const Study& study, const Methods& methods) {
     table.row(row->heading, [&](const MethodFindings& m) {
       return number_of(m.rates.rates.of(*row), NumberForm::percent);
     });
-  table.row("False alarms stated", stated_cell);
+  table.row(kStatedAlarmsHeading, stated_cell);
   for (const AreaRow& row : area_rows())
     table.row(row.heading,
               [&](const MethodFindings& m) { return area(m.rates.*row.curve, m.rates.*row.interval); });

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -83,6 +84,29 @@ TEST_CASE("comparison text: without the rest, a screen with one row a method tha
     CHECK_THAT(text, Contains("\n" + method.name() + " "));
   CHECK_THAT(text, !Contains("Healthy flagged") && Contains("No loop was healthy"));
   CHECK_THAT(text, !Contains("McNemar") && Catch::EndsWith("\nMore with --full.\n"));
+}
+
+TEST_CASE("comparison text: the best method stands first, and one of the user is told of by name") {
+  Campaign campaign = four_methods();
+  const auto set = [&campaign](std::size_t method, bool flagged) {
+    for (ExperimentRecord& record : campaign.records)
+      if (record.status == ExperimentStatus::ok)
+        record.assessments[method] = plain_verdict(record.assessments[method].form, flagged, 0.5);
+  };
+  for (const std::size_t worse : {0, 1, 2})
+    set(worse, false);
+  set(3, true);
+  MethodDescription own = campaign.methods[2].form->method();
+  own.origin = "program mine";
+  campaign.methods[2].form = std::make_shared<AssessmentForm>(own, campaign.study);
+  const std::string text =
+      document_text(comparison_document(campaign, findings_of(campaign)), kTerminalWidth, false);
+  const auto place = [&](std::size_t method) {
+    return text.find("\n" + campaign.methods[method].form->method().name + " ");
+  };
+  REQUIRE(place(3) != std::string::npos);
+  CHECK((place(3) < place(0) && place(0) < place(2)));
+  CHECK_THAT(text, Contains(own.name + " flags 0.0 %") && !Contains("sun flags"));
 }
 
 TEST_CASE("comparison text: one method has no pairs, and what was not counted is left out") {
