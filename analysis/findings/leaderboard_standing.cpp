@@ -4,12 +4,20 @@
 #include <string>
 
 #include "analysis/findings/world_counts.hpp"
+#include "analysis/methods/assessment_method.hpp"
 
 namespace mpm {
 namespace {
 
-/// Both on the loops of all cells: the other one first.
-BoardDuel duel(const Leaderboard& board, const RateRow& rate, std::size_t method, std::size_t other) {
+bool tells_sources(const Leaderboard& board, std::size_t method) {
+  return std::any_of(board.cells.begin(), board.cells.end(), [method](const CellScores& cell) {
+    return cell.trouble.empty() && cell.methods[method].scope.tells_sources;
+  });
+}
+
+}  // namespace
+
+BoardDuel board_duel(const Leaderboard& board, const RateRow& rate, std::size_t method, std::size_t other) {
   std::vector<PairedCounts> clusters;
   for (const CellScores& cell : board.cells) {
     if (!cell.trouble.empty())
@@ -33,13 +41,22 @@ BoardDuel duel(const Leaderboard& board, const RateRow& rate, std::size_t method
   return found;
 }
 
-bool tells_sources(const Leaderboard& board, std::size_t method) {
-  return std::any_of(board.cells.begin(), board.cells.end(), [method](const CellScores& cell) {
-    return cell.trouble.empty() && cell.methods[method].scope.tells_sources;
-  });
+std::vector<InformationPair> information_pairs(const Leaderboard& board) {
+  const auto place_of = [&board](const std::string& name) {
+    return std::find(board.methods.begin(), board.methods.end(), name);
+  };
+  std::vector<InformationPair> pairs;
+  for (std::size_t i = 0; i < board.methods.size(); ++i)
+    for (const std::string_view end : {kCorrected, kUncorrected}) {
+      const auto other = place_of(board.methods[i] + std::string(end));
+      if (other == board.methods.end())
+        continue;
+      const auto variant = static_cast<std::size_t>(other - board.methods.begin());
+      const bool gains = end == kCorrected;
+      pairs.push_back({board.methods[i], gains ? i : variant, gains ? variant : i});
+    }
+  return pairs;
 }
-
-}  // namespace
 
 int Standing::won() const {
   return static_cast<int>(
@@ -58,7 +75,7 @@ std::optional<Standing> standing_of(const Leaderboard& board, std::size_t method
   const RateRow& rate = row_of(rate_rows(), standing.rate);
   for (std::size_t other = 0; other < board.methods.size(); ++other)
     if (other != method && board.methods[other] != kReferenceMethod)
-      if (const BoardDuel found = duel(board, rate, method, other); found.loops > 0)
+      if (const BoardDuel found = board_duel(board, rate, method, other); found.loops > 0)
         standing.duels.push_back(found);
   if (standing.duels.empty())
     return std::nullopt;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -37,6 +38,18 @@ struct Standing {
   int won() const;
   int lost() const;
 };
+
+/// Both on the loops of all cells of which each has the rate.
+BoardDuel board_duel(const Leaderboard& board, const RateRow& rate, std::size_t method, std::size_t other);
+
+/// The same method with the correction by the benchmark and without it (with_other_information()).
+struct InformationPair {
+  std::string method;                 ///< its name
+  std::size_t without = 0, with = 0;  ///< places in Leaderboard::methods
+};
+
+/// Of each method that a board has in both ways, in the order of the board.
+std::vector<InformationPair> information_pairs(const Leaderboard& board);
 
 /// None where the method has no calibrated threshold, or no other one has the rate.
 std::optional<Standing> standing_of(const Leaderboard& board, std::size_t method);

@@ -79,19 +79,51 @@ std::optional<std::string> unmet_requirement(const AssessmentRequirements& requi
   return std::nullopt;
 }
 
+std::optional<AssessmentMethodInfo> with_other_information(const AssessmentMethodInfo& method) {
+  if (method.information == ModelInformation::unused)
+    return std::nullopt;
+  const bool gains = method.information == ModelInformation::nominal;
+  AssessmentMethodInfo other = method;
+  other.name += gains ? kCorrected : kUncorrected;
+  other.title += gains ? ", y_sim corrected by the benchmark" : ", y_sim of the nominal model";
+  other.information = gains                                            ? ModelInformation::shown
+                      : method.information == ModelInformation::learnt ? ModelInformation::denied
+                                                                       : ModelInformation::nominal;
+  other.options.reset();
+  other.reduced.clear();
+  return other;
+}
+
+std::vector<AssessmentMethodInfo> reduced_methods(const AssessmentMethodInfo& method) {
+  std::vector<AssessmentMethodInfo> methods;
+  for (const AssessmentMethodInfo::Reduced& each : method.reduced) {
+    AssessmentMethodInfo& reduced = methods.emplace_back(method);
+    reduced.name += ":" + each.end;
+    reduced.title += ", " + each.title;
+    reduced.make = each.make;
+    reduced.options.reset();
+    reduced.reduced.clear();
+  }
+  return methods;
+}
+
 Assessor::Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context)
     : name_(info.name),
       requirements_(info.requirements),
       locates_cvs_(info.locates_cvs),
-      relative_(info.relative && context.correction),
+      information_(context.correction ? info.information : ModelInformation::nominal),
       context_(context),
       make_(info.make),
       unusable_(unusable_benchmark(context)),
       holds_analyses_(requirements_.complete_record && has_analysers(context.study.controller.analysers)) {
-  if (!holds_analyses_ && !relative_)
+  const bool is_shown = information_ == ModelInformation::shown,
+             is_denied = information_ == ModelInformation::denied;
+  if (!holds_analyses_ && !is_shown && !is_denied)
     return;
   seen_ = std::make_unique<AssessmentContext>(context_);
   seen_->of_benchmark = std::make_shared<const DerivedValues>();
+  if (is_denied)
+    seen_->correction.reset();
   if (holds_analyses_ && seen_->benchmark) {
     of_benchmark_ = with_held(*context_.benchmark);
     seen_->benchmark = *of_benchmark_;
@@ -122,7 +154,7 @@ Assessment Assessor::asked_of_seen(const AssessedLoop& loop) {
   try {
     if (!method_)
       learn();
-    Assessment assessment = method_->assess(relative_ ? *context_.correction->corrected(loop) : loop);
+    Assessment assessment = answer_of_method(loop);
     assert(assessment.cvs.empty() || static_cast<Eigen::Index>(assessment.cvs.size()) == loop.y.rows());
     if (assessment.status != AssessmentStatus::ok)
       return assessment;
@@ -138,9 +170,19 @@ Assessment Assessor::asked_of_seen(const AssessedLoop& loop) {
   }
 }
 
+/// A method that is denied the correction asks others without it as well: their answers are kept apart.
+Assessment Assessor::answer_of_method(const AssessedLoop& loop) {
+  if (information_ == ModelInformation::shown)
+    return method_->assess(*context_.correction->corrected(loop));
+  if (information_ != ModelInformation::denied)
+    return method_->assess(loop);
+  return method_->assess(*loop.derived.of<const AssessedLoop>(
+      "uncorrected", [&] { return same_window(loop, loop.from_start()); }));
+}
+
 void Assessor::learn() {
   try {
-    if (relative_ && seen_->benchmark) {
+    if (information_ == ModelInformation::shown && seen_->benchmark) {
       const std::string key = fmt::format("corrected benchmark, held {} {}", holds_analyses_,
                                           holds_analyses_ && requirements_.analyses_as_shown);
       of_benchmark_ = context_.of_benchmark->of<const AssessedLoop>(

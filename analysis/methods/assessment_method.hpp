@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment.hpp"
+#include "base/enum_words.hpp"
 #include "base/number_text.hpp"
 #include "scenarios/study/assessment_options.hpp"
 
@@ -30,6 +33,23 @@ struct AssessmentRequirements {
   /// method by T0.
   bool analyses_as_shown = false;
 };
+
+/// What a method makes of the errors of the model that the benchmark shows (AssessmentContext::correction),
+/// where a study has them learnt. It is a factor of its own: with_other_information() has the same method
+/// with them, or without.
+enum class ModelInformation : std::int8_t {
+  unused,   ///< it does not look at y_sim, or goes by errors of its own
+  nominal,  ///< nothing: y_sim is that of the nominal model
+  shown,    ///< y_sim of loop and benchmark has them: the method is shown what is new since the benchmark
+  learnt,   ///< it asks for them itself
+  denied,   ///< it asks for them and is told nothing
+};
+
+template <>
+inline constexpr auto kWords<ModelInformation> = word_list("not used", "nominal",
+                                                           "corrected by the benchmark",
+                                                           "learnt from the benchmark",
+                                                           "nominal, nothing learnt");
 
 /// The scope of a number: the whole loop, each CV, each channel, each CV at each lag, or each window of a
 /// study with monitoring.
@@ -81,9 +101,7 @@ struct MethodDescription {
   bool tells_sources = false;     ///< CvAssessment::source
   bool names_mismatches = false;  ///< Assessment::named_mismatch
   bool names_candidates = false;  ///< Assessment::named_candidate
-  /// The method is shown what is new since the benchmark, where errors of the model are learnt from it
-  /// (AssessmentContext::correction).
-  bool relative = false;
+  ModelInformation information = ModelInformation::nominal;
   /// The share of healthy loops that the method states it flags; none if it states no share.
   std::optional<double> stated_false_alarms = {};
   std::vector<AssessmentNumberInfo> numbers;
@@ -104,16 +122,34 @@ MethodOptionTable option_table(std::vector<OptionKey> (*keys)(Options&), std::st
 
 /// A method that this program has.
 struct AssessmentMethodInfo : MethodDescription {
+  using Make = std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext& context)>;
+  /// The method without one of its parts, NAME:END.
+  struct Reduced {
+    std::string end, title;
+    Make make;
+  };
+
   /// Further numbers on the loops of a study of named scenarios, in which every CV is looked at; may be
   /// empty.
   std::function<std::vector<AssessmentNumberInfo>()> scenario_numbers;
   /// `context` must outlive the method. Throws InputError for options that do not fit the study.
-  std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext& context)> make;
+  Make make;
   /// Its options, by option_table(); may be empty.
   std::optional<MethodOptionTable> options = {};
   /// MethodDescription::stated_false_alarms with these options; may be empty.
   std::function<std::optional<double>(const MethodOptions& options)> states_false_alarms = {};
+  std::vector<Reduced> reduced = {};
 };
+
+/// Ends of the names of with_other_information().
+inline constexpr std::string_view kCorrected = ":corrected", kUncorrected = ":uncorrected";
+
+/// The method with the correction that it lacks, NAME:corrected, or without the one that it has,
+/// NAME:uncorrected; none of a method that does not look at y_sim. Its options are those of the method.
+std::optional<AssessmentMethodInfo> with_other_information(const AssessmentMethodInfo& method);
+
+/// AssessmentMethodInfo::reduced as methods, with the options of the method.
+std::vector<AssessmentMethodInfo> reduced_methods(const AssessmentMethodInfo& method);
 
 /// The first requirement that the loop or its context does not meet, in one sentence; none if all are met.
 std::optional<std::string> unmet_requirement(const AssessmentRequirements& requirements,
@@ -137,17 +173,18 @@ class Assessor {
   Assessment asked_of_seen(const AssessedLoop& loop);
   void learn();
   std::shared_ptr<const AssessedLoop> with_held(const AssessedLoop& loop) const;
+  Assessment answer_of_method(const AssessedLoop& loop);
   const AssessmentContext& seen() const { return seen_ ? *seen_ : context_; }
 
   std::string name_;
   AssessmentRequirements requirements_;
   bool locates_cvs_;
-  bool relative_;
+  ModelInformation information_;  ///< shown or denied where there is something to show or deny
   const AssessmentContext& context_;
-  std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext&)> make_;
+  AssessmentMethodInfo::Make make_;
   std::optional<std::string> unusable_;  ///< why nothing can be learnt from the benchmark
   bool holds_analyses_;
-  std::unique_ptr<AssessmentContext> seen_;  ///< of a method that is relative, or to which analyses are held
+  std::unique_ptr<AssessmentContext> seen_;  ///< other than `context_` where signals or information are
   /// The record of the window that is the benchmark of `seen_`.
   std::shared_ptr<const AssessedLoop> of_benchmark_;
   std::unique_ptr<AssessmentMethod> method_;  ///< made for the first loop to which it applies

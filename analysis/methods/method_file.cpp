@@ -13,7 +13,8 @@
 namespace mpm {
 namespace {
 
-const std::vector<std::string> kMethodKeys{"command", "time_limit", "options"};
+const std::vector<std::string> kProgramKeys{"command", "time_limit", "options"};
+const std::vector<std::string> kCompositeKeys{"detector", "namer"};
 
 std::string program_options(const TomlTable& table) {
   const toml::node* const node = table.find("options");
@@ -27,6 +28,12 @@ std::string program_options(const TomlTable& table) {
 }
 
 }  // namespace
+
+bool is_answering_name(std::string_view name) {
+  const std::size_t end = name.find_first_of(":+");
+  return is_method_name(name.substr(0, end)) &&
+         (end == std::string_view::npos || is_answering_name(name.substr(end + 1)));
+}
 
 bool is_method_name(std::string_view name) {
   constexpr std::size_t kLongest = 64;
@@ -52,7 +59,14 @@ std::vector<MethodProgram> load_method_file(const std::filesystem::path& path) {
   for (const std::string& name : names) {
     if (!is_method_name(name))
       methods.refuse(name, in_quotes(name), kMethodNameRule);
-    const TomlTable table = methods.table(name, kMethodKeys);
+    const toml::table* const entry = toml["method"][name].as_table();
+    if (entry != nullptr && (entry->contains("detector") || entry->contains("namer"))) {
+      const TomlTable table = methods.table(name, kCompositeKeys);
+      programs.push_back(
+          {.name = name, .detector = read_text(table, "detector"), .namer = read_text(table, "namer")});
+      continue;
+    }
+    const TomlTable table = methods.table(name, kProgramKeys);
     MethodProgram program{
         .name = name, .command = read_command(table, "command"), .options = program_options(table)};
     program.time_limit = read_time_limit_or(table, "time_limit", program.time_limit);

@@ -15,13 +15,18 @@ inline constexpr const char* kMethodNameRule =
     "experiments, findings or loops";
 
 bool is_method_name(std::string_view name);
+/// The same of a method that has answered, which may be a variant or a composite of methods: NAME:END,
+/// NAME+NAME.
+bool is_answering_name(std::string_view name);
 
-/// A method of assessment that is a program of its own (analysis/methods/outside_program).
+/// A method of a file of methods: a program of its own (analysis/methods/outside_program), or two methods as
+/// one (analysis/methods/composite_method).
 struct MethodProgram {
-  std::string name;                  ///< of the method
-  std::vector<std::string> command;  ///< the program and its arguments
-  double time_limit = 60.0;          ///< seconds for an answer
-  std::string options = "{}";        ///< JSON, for the program
+  std::string name;                       ///< of the method
+  std::string detector = {}, namer = {};  ///< the methods of a composite; empty: it is a program
+  std::vector<std::string> command = {};  ///< the program and its arguments
+  double time_limit = 60.0;               ///< seconds for an answer
+  std::string options = "{}";             ///< JSON, for the program
 };
 
 /// Reads a file of methods (docs/bring_your_own.md):
@@ -30,6 +35,10 @@ struct MethodProgram {
 ///   command = ["python3", "mine.py"]
 ///   time_limit = 60
 ///   options = {threshold = 1.5}
+///
+///   [method.two]
+///   detector = "sse"
+///   namer = "lasso"
 ///
 /// Errors: InputError "FILE:LINE: KEY: found ...; allowed: ..." as for a study file.
 std::vector<MethodProgram> load_method_file(const std::filesystem::path& path);

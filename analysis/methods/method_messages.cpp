@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -323,6 +324,15 @@ Json loop_json(const AssessedLoop& loop) {
     json["whole"] = loop_json(*loop.whole);
   }
   return json;
+}
+
+void add_corrected(Json& json, const AssessedLoop& loop, const ModelCorrection* correction) {
+  const std::shared_ptr<const AssessedLoop> corrected =
+      correction != nullptr ? correction->corrected(loop) : nullptr;
+  const AssessedLoop& shown = corrected ? *corrected : loop;
+  json["y_sim_corrected"] = matrix_json(shown.y_sim);
+  if (loop.whole != nullptr)
+    json["whole"]["y_sim_corrected"] = matrix_json(shown.whole->y_sim);
 }
 
 Json context_json(const AssessmentContext& context) {

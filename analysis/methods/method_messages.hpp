@@ -34,6 +34,10 @@ const std::vector<LoopSignal>& loop_signals();
 /// "first".
 nlohmann::ordered_json loop_json(const AssessedLoop& loop);
 
+/// Puts "y_sim_corrected" beside "y_sim" in the loop_json() of a loop: y_sim as ModelCorrection::corrected()
+/// has it, or y_sim where nothing is learnt.
+void add_corrected(nlohmann::ordered_json& json, const AssessedLoop& loop, const ModelCorrection* correction);
+
 /// The plant's variables, sample time, nominal model (transfer functions and step responses), controller,
 /// operating point and benchmark: all that a method may know besides the loop. No draw, no seed.
 nlohmann::ordered_json context_json(const AssessmentContext& context);

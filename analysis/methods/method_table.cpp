@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/methods/composite_method.hpp"
 #include "base/error.hpp"
 #include "scenarios/study/assessment_options.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -45,14 +46,28 @@ MPM_EACH_METHOD(MPM_DECLARE)
 #undef MPM_DECLARE
 
 #define MPM_CALL(name) name##_method(),
-MethodTable::MethodTable() : methods_{MPM_EACH_METHOD(MPM_CALL)} {}
+MethodTable::MethodTable() : methods_{MPM_EACH_METHOD(MPM_CALL)} {
+  for (const AssessmentMethodInfo& method : methods_)
+    add_variants(method);
+  // What a trivial division of labour reaches.
+  for (const auto& [detector, namer] : {std::pair("sse", "lasso"), std::pair("counterfactual", "order")})
+    variants_.push_back(
+        composite_method(fmt::format("{}+{}", detector, namer), method(detector), method(namer)));
+}
 #undef MPM_CALL
 
+void MethodTable::add_variants(const AssessmentMethodInfo& method) {
+  if (auto other = with_other_information(method))
+    variants_.push_back(*std::move(other));
+  for (AssessmentMethodInfo& reduced : reduced_methods(method))
+    variants_.push_back(std::move(reduced));
+}
+
 void MethodTable::add(AssessmentMethodInfo method) {
-  const std::vector<std::string> taken = names();
-  if (std::find(taken.begin(), taken.end(), method.name) != taken.end())
+  if (has(method.name))
     throw InputError("method", fmt::format("'{}' from outside", method.name),
-                     fmt::format("a name that is not one of {}", fmt::join(taken, ", ")));
+                     fmt::format("a name that is not one of {}", fmt::join(names(), ", ")));
+  add_variants(method);
   methods_.push_back(std::move(method));
 }
 
@@ -63,26 +78,39 @@ std::vector<std::string> MethodTable::names() const {
   return names;
 }
 
+std::vector<std::string> MethodTable::every_name() const {
+  std::vector<std::string> names = this->names();
+  for (const AssessmentMethodInfo& method : variants_)
+    names.push_back(method.name);
+  return names;
+}
+
+const AssessmentMethodInfo* MethodTable::find(std::string_view name) const {
+  for (const auto* const list : {&methods_, &variants_})
+    for (const AssessmentMethodInfo& method : *list)
+      if (method.name == name)
+        return &method;
+  return nullptr;
+}
+
 const AssessmentMethodInfo& MethodTable::method(std::string_view name) const {
-  for (const AssessmentMethodInfo& method : methods_)
-    if (method.name == name)
-      return method;
-  throw InputError("method", with_nearest(name, names()), fmt::format("{}", fmt::join(names(), ", ")));
+  if (const AssessmentMethodInfo* const found = find(name))
+    return *found;
+  throw InputError("method", with_nearest(name, every_name()), fmt::format("{}", fmt::join(names(), ", ")));
 }
 
 std::vector<std::string> MethodTable::known(const std::vector<std::string>& names,
                                             const std::string& key) const {
-  std::vector<std::string> known = this->names();
   const auto refuse = [&](const std::string& found) {
-    throw InputError(key, found, fmt::format("each once: {}; or all", fmt::join(known, ", ")));
+    throw InputError(key, found, fmt::format("each once: {}; or all", fmt::join(this->names(), ", ")));
   };
   if (names == std::vector<std::string>{"all"})
-    return known;
+    return this->names();
   if (names.empty())
     refuse("no method");
   for (auto name = names.begin(); name != names.end(); ++name) {
-    if (std::find(known.begin(), known.end(), *name) == known.end())
-      refuse(with_nearest(*name, known));
+    if (!has(*name))
+      refuse(with_nearest(*name, every_name()));
     if (std::find(names.begin(), name, *name) != name)
       refuse(fmt::format("'{}' twice", *name));
   }

@@ -15,21 +15,30 @@ class MethodTable {
   /// Those of this program, the chain of the thesis first.
   MethodTable();
 
-  /// Adds a method, as the last one. Throws InputError for a name that exists.
+  /// Adds a method, as the last one, and its variant. Throws InputError for a name that exists.
   void add(AssessmentMethodInfo method);
 
   const std::vector<AssessmentMethodInfo>& methods() const { return methods_; }
+  /// Those that one asks for by name only: with_other_information() and reduced_methods() of each method, and
+  /// composites of two.
+  const std::vector<AssessmentMethodInfo>& variants() const { return variants_; }
   std::vector<std::string> names() const;
+  /// Those and the variants.
+  std::vector<std::string> every_name() const;
+  bool has(std::string_view name) const { return find(name) != nullptr; }
   /// The method of this name. Throws InputError, with the known names, when there is none.
   const AssessmentMethodInfo& method(std::string_view name) const;
   /// These names, "all" spelled out; `key` is for messages. Throws InputError for an unknown method, one that
-  /// is named twice, or none.
+  /// is named twice, or none. "all" are names(), without variants.
   std::vector<std::string> known(const std::vector<std::string>& names, const std::string& key) const;
   /// The tables [assessment.NAME] of all methods that have options, in their order.
   std::vector<MethodOptionTable> option_tables() const;
 
  private:
-  std::vector<AssessmentMethodInfo> methods_;
+  const AssessmentMethodInfo* find(std::string_view name) const;
+  void add_variants(const AssessmentMethodInfo& method);
+
+  std::vector<AssessmentMethodInfo> methods_, variants_;
 };
 
 /// The methods of this program.

@@ -104,13 +104,16 @@ void read_description(const JsonEntry& entry, ProgramDescription& description) {
   entry.require_keys({"title", "verdict", "needs", "answers", "methods", "numbers", "stated_false_alarms"});
   method.title = text_or(entry, "title", method.title);
   method.verdict = text_or(entry, "verdict", method.verdict);
+  bool corrected = false;
   read_flags(entry, "needs",
              {{"setpoints", &needs.setpoints},
               {"moving_setpoints", &needs.moving_setpoints},
               {"benchmark", &needs.benchmark},
               {"moving_mvs", &needs.moving_mvs},
               {"nominal_loop", &needs.nominal_loop},
-              {"complete_record", &needs.complete_record}});
+              {"complete_record", &needs.complete_record},
+              {"corrected", &corrected}});
+  method.information = corrected ? ModelInformation::learnt : ModelInformation::nominal;
   read_flags(entry, "answers",
              {{"cv", &method.locates_cvs},
               {"channel", &method.names_channels},
@@ -118,7 +121,7 @@ void read_description(const JsonEntry& entry, ProgramDescription& description) {
               {"mismatch", &method.names_mismatches},
               {"candidate", &method.names_candidates}});
   const std::vector<std::string> own =
-      shipped_methods().names();  // a method from outside could ask for itself
+      shipped_methods().every_name();  // a method from outside could ask for itself
   for (const std::size_t place : words_in(entry, "methods", own))
     description.methods.push_back(own[place]);
   if (const std::optional<JsonEntry> stated = entry.find("stated_false_alarms"))
@@ -157,7 +160,8 @@ class ProgramMethod final : public AssessmentMethod {
         method_(description.method),
         programs_(std::move(programs)),
         plant_(context.study.plant),
-        context_(context_json(context)),
+        correction_(context.correction),
+        context_(told_context(context)),
         context_text_(context_.dump()) {
     for (const std::string& name : description.methods)
       told_.push_back({&assessment_method(name), shared_assessor(assessment_method(name), context)});
@@ -165,6 +169,8 @@ class ProgramMethod final : public AssessmentMethod {
 
   Assessment assess(const AssessedLoop& loop) override {
     Json told = loop_json(loop);
+    if (method_.information == ModelInformation::learnt)
+      add_corrected(told, loop, correction_.get());
     for (Told& each : told_)
       told["answers"][each.method->name] = answer_json(each.assessor->assess(loop), plant_, *each.method);
     Json answer;
@@ -183,6 +189,13 @@ class ProgramMethod final : public AssessmentMethod {
   }
 
  private:
+  Json told_context(const AssessmentContext& context) const {
+    Json told = context_json(context);
+    if (method_.information == ModelInformation::learnt && context.benchmark)
+      add_corrected(told["benchmark"], *context.benchmark, correction_.get());
+    return told;
+  }
+
   /// A method whose answers the program is told.
   struct Told {
     const AssessmentMethodInfo* method;
@@ -219,6 +232,7 @@ class ProgramMethod final : public AssessmentMethod {
   const MethodDescription method_;
   const std::shared_ptr<WaitingPrograms> programs_;
   const PlantModel& plant_;
+  const std::shared_ptr<const ModelCorrection> correction_;
   const Json context_;
   const std::string context_text_;
   std::vector<Told> told_;

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 #include <sched.h>
 
+#include "analysis/methods/composite_method.hpp"
 #include "analysis/methods/method_file.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/outside_program.hpp"
@@ -107,18 +108,41 @@ void add_method_files(CLI::App& app, std::vector<std::string>& files) {
       "File of methods that are programs, [method.NAME] command = [...]; may be given several times");
 }
 
+namespace {
+
+AssessmentMethodInfo method_of_program(const MethodProgram& program) {
+  trust_program(program.command);
+  AssessmentMethodInfo method = program_method(program);
+  method.given_options = program.options;
+  method.fingerprint = fmt::format("{}, options {}", command_identity(program.command), program.options);
+  return method;
+}
+
+AssessmentMethodInfo method_of_composite(const MethodProgram& composite, const MethodTable& table) {
+  const AssessmentMethodInfo &detector = table.method(composite.detector),
+                             &namer = table.method(composite.namer);
+  AssessmentMethodInfo method = composite_method(composite.name, detector, namer);
+  method.origin = fmt::format("{} detects, {} names", detector.name, namer.name);
+  method.fingerprint = fmt::format("{} [{}] [{}]", method.origin, detector.fingerprint, namer.fingerprint);
+  return method;
+}
+
+}  // namespace
+
 MethodPrograms take_method_files(const std::vector<std::string>& files) {
   std::vector<std::string> names;
+  std::vector<MethodProgram> composites;  // of methods that stand behind them, too
   const auto table = std::make_shared<MethodTable>();
   for (const std::string& file : files)
-    for (const MethodProgram& program : load_method_file(file)) {
-      trust_program(program.command);
-      AssessmentMethodInfo method = program_method(program);
-      method.given_options = program.options;
-      method.fingerprint = fmt::format("{}, options {}", command_identity(program.command), program.options);
-      table->add(std::move(method));
+    for (MethodProgram& program : load_method_file(file)) {
       names.push_back(program.name);
+      if (program.detector.empty())
+        table->add(method_of_program(program));
+      else
+        composites.push_back(std::move(program));
     }
+  for (const MethodProgram& composite : composites)
+    table->add(method_of_composite(composite, *table));
   return {names, table};
 }
 

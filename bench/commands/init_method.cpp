@@ -149,7 +149,7 @@ ExitCode init_method(const std::filesystem::path& file) {
   if (!is_method_name(name))
     throw InputError("FILE", fmt::format("'{}'", name), kMethodNameRule);
   const std::vector<std::string> ours = shipped_methods().names();
-  if (std::find(ours.begin(), ours.end(), name) != ours.end())
+  if (shipped_methods().has(name))
     throw InputError("FILE", fmt::format("the name of the method {}", name),
                      fmt::format("a name that is not one of {}", fmt::join(ours, ", ")));
   const std::filesystem::path table = std::filesystem::path(file).replace_extension(".toml");

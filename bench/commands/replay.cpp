@@ -33,10 +33,9 @@ struct ReplayArguments {
 /// Without the methods that this program does not have, such as verdicts from outside: nobody can ask them
 /// again.
 Campaign with_known_methods(Campaign campaign) {
-  const std::vector<std::string> known = shipped_methods().names();
   std::vector<std::string> kept, left_out;
   for (const std::string& method : method_names(campaign))
-    (std::find(known.begin(), known.end(), method) == known.end() ? left_out : kept).push_back(method);
+    (shipped_methods().has(method) ? kept : left_out).push_back(method);
   if (!left_out.empty())
     print_result(fmt::format("not asked again: {}\n", fmt::join(left_out, ", ")));
   return with_methods(std::move(campaign), kept, std::nullopt);

@@ -7,7 +7,8 @@ import numpy
 
 from . import figures
 
-SIGNALS = {"y": "cvs", "u": "mvs", "u_target": "mvs", "d": "mds", "y_sim": "cvs", "y_set": "cvs", "candidates": None}
+SIGNALS = {"y": "cvs", "u": "mvs", "u_target": "mvs", "d": "mds", "y_sim": "cvs", "y_set": "cvs", "candidates": None,
+           "y_sim_corrected": "cvs"}
 
 
 class Loop:
@@ -17,6 +18,7 @@ class Loop:
     | attribute | rows | what |
     |---|---|---|
     | `y`, `y_sim`, `y_set` | CVs | measured; output of the model with the recorded MVs and disturbances; setpoints |
+    | `y_sim_corrected` | CVs | y_sim as the benchmark corrects it, of a method with `needs=["corrected"]`; otherwise empty |
     | `u`, `u_target` | MVs | moves of the controller, and the targets of its optimizer |
     | `d` | measured disturbances | |
     | `candidates` | logged signals | further signals that may drive a disturbance |

@@ -173,9 +173,8 @@ VerdictFailures failures_of(const FinishedBoard& board, std::size_t method) {
 
 /// Methods that this program does not have.
 void judge_outside_methods(const FinishedBoard& board, double minimum, std::vector<GateResult>& results) {
-  const std::vector<std::string> own = shipped_methods().names();
   for (std::size_t method = 0; method < board.methods.size(); ++method)
-    if (std::find(own.begin(), own.end(), board.methods[method]) == own.end())
+    if (!shipped_methods().has(board.methods[method]))
       if (auto answers = judge_answers(board.methods[method], failures_of(board, method), minimum))
         results.push_back(*std::move(answers));
 }

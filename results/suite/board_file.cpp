@@ -281,7 +281,7 @@ std::vector<BoardMethod> methods_in(const JsonEntry& entry, bool is_whole) {
   for (const JsonEntry& method : entry.list()) {
     method.require_keys({"name", "cv", "source"});
     const std::string name = method.at("name").text();
-    method.at("name").require(is_method_name(name), kMethodNameRule);
+    method.at("name").require(is_answering_name(name), kMethodNameRule);
     method.at("name").require(std::none_of(methods.begin(), methods.end(),
                                            [&](const BoardMethod& each) { return each.name == name; }),
                               "each method once");

@@ -103,6 +103,26 @@ SuiteJson standing_json(const Leaderboard& board) {
   return json;
 }
 
+/// The numbers of information_section().
+SuiteJson information_json(const Leaderboard& board) {
+  SuiteJson json = SuiteJson::array();
+  for (const InformationPair& pair : information_pairs(board))
+    for (const std::string_view name : information_rates()) {
+      const RateRow& row = row_of(rate_rows(), name);
+      const BoardDuel duel = board_duel(board, row, pair.with, pair.without);
+      if (duel.loops > 0)
+        json.push_back({{"method", pair.method},
+                        {"rate", name},
+                        {"without", board.overall[pair.without].rates.of(row).value},
+                        {"with", board.overall[pair.with].rates.of(row).value},
+                        {"difference", duel.difference.value},
+                        {"lower", duel.difference.interval.lower},
+                        {"upper", duel.difference.interval.upper},
+                        {"loops", duel.loops}});
+    }
+  return json;
+}
+
 /// Of each method on the moving windows of a cell.
 SuiteJson delays_json(const Leaderboard& board, const CellScores& cell) {
   SuiteJson json{{"time_unit", cell.time_unit}, {"methods", SuiteJson::object()}};
@@ -163,6 +183,8 @@ std::string leaderboard_json(const Leaderboard& board) {
                  {"methods", methods}};
   if (board.in_worlds())
     json["ranking"] = ranking_json(board);
+  if (!information_pairs(board).empty())
+    json["information"] = information_json(board);
   if (!board.finished_by.empty())
     json["finished_by"] = board.finished_by;
   if (!board.own.empty()) {

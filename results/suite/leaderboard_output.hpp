@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "analysis/findings/leaderboard.hpp"
 #include "analysis/findings/leaderboard_standing.hpp"
@@ -34,5 +36,12 @@ std::string standing_sentence(const Leaderboard& board, std::size_t method,
 
 /// Who is best at what, where one's own methods stand, and the table of board_columns.hpp.
 Section standing_section(const Leaderboard& board);
+
+/// The rates that the correction by the benchmark may change.
+std::vector<std::string_view> information_rates();
+
+/// What the correction by the benchmark brings to each method that the board has with and without it, and
+/// what the choice of the method brings; no content without such a method.
+Section information_section(const Leaderboard& board);
 
 }  // namespace mpm

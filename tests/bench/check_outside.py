@@ -450,6 +450,64 @@ def check_programs(outside, octave):
     assert "mine-py" in outside.run("summary", path)
 
 
+CORRECTED = """
+import json, sys
+import numpy
+known = {}
+for line in sys.stdin:
+    if not line.strip():
+        continue
+    message = json.loads(line)
+    answer = {"number": message["number"]}
+    if message["ask"] == "describe":
+        answer.update(needs=["benchmark", "corrected"], numbers=[{"name": "plain"}])
+    if message["ask"] == "context":
+        known = message["context"]["benchmark"]
+    if message["ask"] == "loop":
+        def ratio(model):
+            squares = [((numpy.array(each["y"], float) - each[model]) ** 2).mean(axis=1) for each in (message["loop"], known)]
+            return (squares[0] / squares[1]).max()
+        answer.update(flagged=False, score=ratio("y_sim_corrected"), numbers={"plain": ratio("y_sim")})
+    print(json.dumps(answer) + "\\n", flush=True)
+"""
+
+
+def check_equal_information(outside, source):
+    """What the benchmark teaches is given to a method of one's own as to ours: beside y_sim, or in its place."""
+    script, study, methods, archive = (outside.folder / name for name in ("told.py", "told.toml", "own.toml", "told.h5"))
+    script.write_text(CORRECTED, encoding="utf-8")
+    study.write_text((pathlib.Path(source) / "scenarios/studies/wood-berry.toml").read_text() + """
+[world]
+count = 2
+gain_factor = {uniform = [0.95, 1.05]}
+""")
+    methods.write_text(f"""[method.told]
+command = ['{sys.executable}', '{script}']
+[method.mine]
+command = ['{sys.executable}', '{source}/examples/mine.py']
+[method.two]
+detector = "mine:corrected"
+namer = "lasso"
+""")
+    names = ["sse", "sse:uncorrected", "sse+lasso", "told:uncorrected", "mine:corrected", "told", "mine", "two"]
+    outside.run("run", study, "-o", archive, "--experiments", 6, "--methods", ",".join(names), "--method-file", methods, "--quiet")
+    with h5py.File(archive) as file:
+        assert list(file["method"].asstr()) == names
+        sse, plain, ours, untold, corrected, told, mine, two = file["score"][:].T
+        assert numpy.isfinite(sse).any() and not numpy.allclose(sse, plain, equal_nan=True)
+        for one, other in ((told, sse), (corrected, sse), (two, sse), (mine, plain), (untold, plain), (ours, sse),
+                           (file["methods/told/plain"][:], plain), (file["methods/told:uncorrected/plain"][:], plain)):
+            assert numpy.allclose(one, other, rtol=1e-9, equal_nan=True), (one, other)
+        sources = file["predicted_source"][:]
+        assert (sources[:, 7] == sources[:, 2]).all() and (sources[:, 2] != 0).any()
+    assert "sse:uncorrected" in outside.run("summary", archive) and "two" in outside.run("compare", archive, "--full")
+    for text, message in (("detector = 'sse'\n", "method.x.namer: found nothing"),
+                          ("detector = 'sse'\nnamer = 'nobody'\n", "method: found 'nobody'"),
+                          ("detector = 'sse'\nnamer = 'order'\ncommand = ['cat']\n", "unknown key 'command'")):
+        methods.write_text(f"[method.x]\n{text}")
+        assert message in outside.run("run", study, "-o", archive, "--method-file", methods, "--quiet", code=2), message
+
+
 def check_beside_named(outside, source):
     """A program of --method-file assesses whatever --methods names besides."""
     methods = outside.folder / "beside.toml"
@@ -507,6 +565,7 @@ def main(program, source, octave=""):
         check_refusals(outside, verdicts, sha256)
         check_programs(outside, octave)
         check_odd_programs(outside)
+        check_equal_information(outside, source)
         check_beside_named(outside, source)
         check_program_refusals(outside)
         check_changed_programs(outside)

@@ -269,7 +269,7 @@ AssessmentMethodInfo lasso_method() {
        .names_channels = true,
        .tells_sources = true,
        .names_mismatches = true,
-       .relative = true,
+       .information = ModelInformation::shown,
        .stated_false_alarms = kLassoFalseAlarms,
        .numbers = {{"ratio", NumberScope::channel,
                     "explained squares of the channel over those at which chance selects it"},

@@ -158,7 +158,7 @@ AssessmentMethodInfo local_method() {
        .names_channels = true,
        .tells_sources = true,
        .names_mismatches = true,
-       .relative = true,
+       .information = ModelInformation::shown,
        .stated_false_alarms = kLocalFalseAlarms,
        .numbers = {{"f", NumberScope::cv, "chi2 of the normalised gradient over its degrees of freedom"},
                    {"z_gain", NumberScope::channel, "gradient by the factor of the gain over its deviation"},

@@ -120,6 +120,7 @@ AssessmentMethodInfo yu_qin_method() {
        .verdict = "along some direction the variance of the control errors is above that of the benchmark",
        .requirements = {.setpoints = true, .benchmark = true},
        .locates_cvs = true,
+       .information = ModelInformation::unused,
        .numbers = {{"i_v", NumberScope::loop, "det cov e / det cov e of the benchmark (2.7)"},
                    {"mu_max", NumberScope::loop, "largest ratio of variances (2.8)"},
                    {"mu_min", NumberScope::loop, "smallest ratio of variances (2.8)"},

@@ -97,6 +97,7 @@ AssessmentMethodInfo adequacy_method() {
            .locates_cvs = true,
            .names_channels = true,
            .tells_sources = true,
+           .information = ModelInformation::unused,
            .numbers =
                {{"gain", NumberScope::channel,
                  "expected gain of the repair of this channel, in what the loop costs; none: not simulated"},

@@ -98,7 +98,7 @@ AssessmentMethodInfo candidates_method() {
            .names_channels = false,
            .tells_sources = true,
            .names_candidates = true,
-           .relative = true,
+           .information = ModelInformation::shown,
            .numbers = {{"candidate", NumberScope::cv, "position of the logged signal with the least p-value"},
                        {"log10_p", NumberScope::cv,
                         "log10 p of this signal not helping to predict the error of the CV"}}},

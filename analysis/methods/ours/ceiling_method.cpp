@@ -15,6 +15,7 @@ AssessmentMethodInfo ceiling_method() {
            .names_channels = true,
            .tells_sources = true,
            .names_mismatches = true,
+           .information = ModelInformation::unused,
            .numbers = fault_posterior_numbers()},
           {},
           [](const AssessmentContext& context) { return make_fault_posterior(context, FaultPriors::study); }};

@@ -50,6 +50,7 @@ AssessmentMethodInfo counterfactual_method() {
                   "outside the band of impact",
        .requirements = {.nominal_loop = true, .complete_record = false},
        .locates_cvs = true,
+       .information = ModelInformation::learnt,
        .numbers = {{"ivar", NumberScope::cv,
                     "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise", "1",
                     NumberFinding::regression},

@@ -127,7 +127,7 @@ AssessmentMethodInfo excitation_method() {
            .locates_cvs = true,
            .names_channels = false,
            .tells_sources = true,
-           .relative = true,
+           .information = ModelInformation::shown,
            .numbers = {{"log10_p", NumberScope::cv,
                         "log10 p of no signal from outside helping to predict the error of the CV"},
                        {"autoregression", NumberScope::cv, "order of the autoregression of the error"}}},

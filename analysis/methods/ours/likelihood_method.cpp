@@ -41,6 +41,7 @@ AssessmentMethodInfo likelihood_method() {
            .names_channels = true,
            .tells_sources = true,
            .names_mismatches = true,
+           .information = ModelInformation::learnt,
            .numbers = fault_posterior_numbers()},
           {},
           [](const AssessmentContext& context) {

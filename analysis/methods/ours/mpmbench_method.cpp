@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -20,6 +21,9 @@ constexpr double kNoHelp = 0.05;  ///< p above which the MVs do not help to pred
 constexpr double kMostlyMismatch = 0.2;
 /// Distance of Ivar from 1 that noise and errors of the model do not explain.
 constexpr double kMuchMore = 0.5;
+
+/// What a variant of the method does without (docs/suite.md has what each part brings).
+enum class WithoutPart : std::int8_t { none, order, likelihood, other, quiet };
 
 /// The best methods together, in the order in which an engineer asks.
 ///
@@ -43,8 +47,9 @@ constexpr double kMuchMore = 0.5;
 /// docs/methods.md has the figures from which the choice was made.
 class Mpmbench final : public AssessmentMethod {
  public:
-  explicit Mpmbench(const AssessmentContext& context)
-      : learnt_(learnt_model(context)),
+  Mpmbench(const AssessmentContext& context, WithoutPart without)
+      : without_(without),
+        learnt_(learnt_model(context)),
         nominal_(CounterfactualLoop::of_context(context)),
         posterior_(shared_assessor(assessment_method("likelihood"), context)),
         order_(shared_assessor(assessment_method("order"), context)) {}
@@ -56,7 +61,8 @@ class Mpmbench final : public AssessmentMethod {
       diagnose(loop, impact, assessment);
     if (assessment.status == AssessmentStatus::ok && !assessment.flagged && assessment.cvs.empty())
       assessment.cvs.assign(static_cast<std::size_t>(loop.y.rows()), {.flagged = false, .score = 0.0});
-    if (assessment.status == AssessmentStatus::ok && !assessment.flagged && learnt_)
+    if (assessment.status == AssessmentStatus::ok && !assessment.flagged && learnt_ &&
+        without_ != WithoutPart::quiet)
       name_without_impact(loop, assessment);
     return assessment;
   }
@@ -64,7 +70,7 @@ class Mpmbench final : public AssessmentMethod {
  private:
   /// A fault that costs nothing is named as the source of its CV, and nothing is flagged.
   void name_without_impact(const AssessedLoop& loop, Assessment& assessment) {
-    const Assessment posterior = posterior_->assess(loop);
+    const Assessment posterior = asked(*posterior_, WithoutPart::likelihood, loop);
     if (posterior.status != AssessmentStatus::ok || !posterior.flagged)
       return;
     assessment.cvs = posterior.cvs;
@@ -72,14 +78,20 @@ class Mpmbench final : public AssessmentMethod {
       cv.flagged = false;
   }
 
+  /// What a method says of the loop; nothing where the variant does without it.
+  Assessment asked(Assessor& method, WithoutPart part, const AssessedLoop& loop) const {
+    return without_ == part ? Assessment::not_applicable("the variant does without it") : method.assess(loop);
+  }
+
   void diagnose(const AssessedLoop& loop, const CounterfactualLoop::Impact& impact, Assessment& assessment) {
-    const Assessment posterior = posterior_->assess(loop);
-    const Assessment order = order_->assess(loop);
+    const Assessment posterior = asked(*posterior_, WithoutPart::likelihood, loop);
+    const Assessment order = asked(*order_, WithoutPart::order, loop);
     const auto denies = [](const Assessment& said) {
       return said.status == AssessmentStatus::ok && !said.flagged;
     };
     const bool clean = denies(posterior) && denies(order);
-    assessment.flagged = !clean || (learnt_ && assessment.score > kMuchMore);
+    assessment.flagged =
+        !clean || (learnt_ && assessment.score > kMuchMore && without_ != WithoutPart::other);
     if (!assessment.flagged)
       return;
     if (clean) {
@@ -145,6 +157,7 @@ class Mpmbench final : public AssessmentMethod {
     return log10_p > std::log10(kNoHelp) ? FaultSource::ud : FaultSource::mpm_ud;
   }
 
+  WithoutPart without_;
   std::shared_ptr<const LearntModel> learnt_;
   std::shared_ptr<CounterfactualLoop> nominal_;
   std::shared_ptr<Assessor> posterior_, order_;
@@ -153,6 +166,9 @@ class Mpmbench final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo mpmbench_method() {
+  const auto make_without = [](WithoutPart part) -> AssessmentMethodInfo::Make {
+    return [part](const AssessmentContext& context) { return std::make_unique<Mpmbench>(context, part); };
+  };
   return {
       {.name = "mpmbench",
        .title = "impact, source, channel and size together",
@@ -163,13 +179,20 @@ AssessmentMethodInfo mpmbench_method() {
        .names_channels = true,
        .tells_sources = true,
        .names_mismatches = true,
+       .information = ModelInformation::learnt,
        .numbers = {{"ivar", NumberScope::cv,
                     "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise", "1",
                     NumberFinding::regression},
                    {"valve_mv", NumberScope::loop,
                     "place of the MV whose valve sticks, from 0; none: the source is not a valve"}}},
       {},
-      [](const AssessmentContext& context) { return std::make_unique<Mpmbench>(context); }};
+      make_without(WithoutPart::none),
+      {},
+      {},
+      {{"without-order", "without order", make_without(WithoutPart::order)},
+       {"without-likelihood", "without likelihood", make_without(WithoutPart::likelihood)},
+       {"without-other", "without faults of neither sort", make_without(WithoutPart::other)},
+       {"without-quiet", "without sources of what costs nothing", make_without(WithoutPart::quiet)}}};
 }
 
 }  // namespace mpm

@@ -141,7 +141,7 @@ AssessmentMethodInfo order_method() {
        .locates_cvs = true,
        .names_channels = true,
        .tells_sources = true,
-       .relative = true,
+       .information = ModelInformation::shown,
        .numbers = {{"log10_p", NumberScope::cv, "log10 p of no MV helping to predict the error of the CV"},
                    {"autoregression", NumberScope::cv, "order of the autoregression of the error"},
                    {"log10_p_noise", NumberScope::cv,

@@ -94,7 +94,7 @@ AssessmentMethodInfo sse_method() {
            .verdict = "the mean squared simulation error of some CV is above that of the benchmark",
            .requirements = {.benchmark = true, .complete_record = false},
            .locates_cvs = true,
-           .relative = true,
+           .information = ModelInformation::shown,
            .numbers = {{"tsse", NumberScope::loop, "sum of the SSE of all CVs (6.21)"},
                        {"sse", NumberScope::cv, "norm of y - y_sim (4.17)"},
                        {"ratio", NumberScope::cv,

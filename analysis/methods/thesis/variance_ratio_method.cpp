@@ -67,6 +67,7 @@ AssessmentMethodInfo variance_ratio_method() {
        .verdict = "var y / var y_benchmark of some CV lies outside the band of impact",
        .requirements = {.benchmark = true, .complete_record = false},
        .locates_cvs = true,
+       .information = ModelInformation::unused,
        .numbers = {{"ratio", NumberScope::cv, "var y / var y_benchmark", "1", NumberFinding::regression}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<VarianceRatio>(context); }};

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -62,13 +63,14 @@ class Counting final : public AssessmentMethod {
   std::shared_ptr<Assessor> other_;
 };
 
-AssessmentMethodInfo counting(Counts& counts, const std::string& name, bool relative = false,
+AssessmentMethodInfo counting(Counts& counts, const std::string& name,
+                              ModelInformation information = ModelInformation::nominal,
                               std::shared_ptr<const AssessmentMethodInfo> other = nullptr) {
   return {{.name = name,
            .title = name,
            .verdict = "none",
            .requirements = {},
-           .relative = relative,
+           .information = information,
            .numbers = {}},
           {},
           [&counts, name, other](const AssessmentContext& context) {
@@ -118,7 +120,7 @@ TEST_CASE("a panel asks a method once for a record and once for a window, whoeve
     const auto table = std::make_shared<MethodTable>();
     const auto asked = std::make_shared<const AssessmentMethodInfo>(counting(counts, "asked"));
     table->add(*asked);
-    table->add(counting(counts, "asker", false, asked));
+    table->add(counting(counts, "asker", ModelInformation::nominal, asked));
     study.assessment.table = table;
     const BasisCase basis = run_basis_case(study, testing::kFactory);
     const AssessedLoop loop = assessed_loop(study, basis.point, basis.trajectory);
@@ -147,7 +149,7 @@ TEST_CASE("the methods of a panel that see what is new see one corrected record"
   Counts counts;
   const auto table = std::make_shared<MethodTable>();
   for (const char* name : {"one", "two"})
-    table->add(counting(counts, name, true));
+    table->add(counting(counts, name, ModelInformation::shown));
   table->add(counting(counts, "plain"));
   study.assessment.table = table;
   const BasisCase basis = run_basis_case(study, testing::kFactory);
@@ -157,11 +159,73 @@ TEST_CASE("the methods of a panel that see what is new see one corrected record"
   CHECK(counts["one"].y_sim != counts["plain"].y_sim);
 }
 
+TEST_CASE("the correction by the benchmark is a factor that every method can be given and denied",
+          "[panel]") {
+  Study study = world_study();
+  study.monitoring.reset();
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  const AssessedLoop loop = assessed_loop(
+      study, basis.point, simulate_experiment(study, draw_experiment(study, 0), testing::kFactory));
+  AssessmentContext told = assessment_context(study, basis, testing::kFactory);
+  REQUIRE(told.correction);
+  AssessmentContext untold = told, corrected = told;
+  untold.correction.reset();
+  corrected.correction.reset();
+  corrected.benchmark = *told.correction->corrected(*told.benchmark);
+  const AssessedLoop corrected_loop = *told.correction->corrected(loop);
+  const auto said = [](const AssessmentMethodInfo& method, const AssessmentContext& context,
+                       const AssessedLoop& record) {
+    const auto form = std::make_shared<const AssessmentForm>(method, context.study);
+    return kept(form, Assessor(method, context).assess(record));
+  };
+  int answered = 0;
+  for (const AssessmentMethodInfo& method : shipped_methods().methods()) {
+    const std::optional<AssessmentMethodInfo> other = with_other_information(method);
+    REQUIRE(other.has_value() == (method.information != ModelInformation::unused));
+    if (!other)
+      continue;
+    INFO(other->name);
+    CHECK(&shipped_methods().method(other->name) != nullptr);
+    const bool gains = other->information == ModelInformation::shown;
+    CHECK(other->name == method.name + (gains ? ":corrected" : ":uncorrected"));
+    // The variant, and the method itself where it is told this much.
+    CHECK(same(said(*other, told, loop),
+               gains ? said(method, corrected, corrected_loop) : said(method, untold, loop)));
+    CHECK(same(said(*other, untold, loop), said(method, untold, loop)));
+    answered += said(*other, told, loop).answered() ? 1 : 0;
+  }
+  CHECK(answered > 10);
+}
+
+TEST_CASE("a composite finds what one method finds, and names what another one names", "[panel]") {
+  Study study = world_study();
+  study.monitoring.reset();
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  ExperimentRunner runner(study, basis, {"sse", "lasso", "sse+lasso"}, testing::kFactory);
+  int mismatches = 0, disturbances = 0;
+  for (std::int64_t index = 0; index < study.experiment_count(); ++index) {
+    const std::vector<AssessmentRecord> said = runner.run(index, StorePolicy::none).assessments;
+    const AssessmentRecord &detector = said[0], &namer = said[1], &both = said[2];
+    REQUIRE((detector.answered() && namer.answered() && both.answered()));
+    CHECK(both.flagged == detector.flagged);
+    CHECK(both.score == detector.score);
+    CHECK(both.predicted_cv == (namer.flagged ? namer : detector).predicted_cv);
+    CHECK(both.predicted_source == (namer.flagged ? namer.predicted_source : FaultSource::ud));
+    CHECK(same(both.values("mismatch_size").reshaped(), namer.values("mismatch_size").reshaped()));
+    (namer.flagged ? mismatches : disturbances) += both.flagged ? 1 : 0;
+  }
+  CHECK((mismatches > 0 && disturbances > 0));
+}
+
 TEST_CASE("methods give the same answers alone and together, in any order and in threads", "[panel]") {
   const Study study = world_study();
   const BasisCase basis = run_basis_case(study, testing::kFactory);
-  const std::vector<std::string> methods{"botelho", "sse",        "counterfactual", "mpmbench", "order",
-                                         "lasso",   "likelihood", "ceiling",        "arx-oe"};
+  std::vector<std::string> methods{"botelho", "sse",        "counterfactual", "mpmbench", "order",
+                                   "lasso",   "likelihood", "ceiling",        "arx-oe"};
+  for (const char* const variant :
+       {"mpmbench:uncorrected", "likelihood:uncorrected", "order:uncorrected", "arx-oe:corrected",
+        "pmr:corrected", "mpmbench:without-order", "sse+lasso", "counterfactual+order"})
+    methods.emplace_back(variant);
   const std::vector<std::string> reversed(methods.rbegin(), methods.rend());
   using Answers = std::vector<std::vector<AssessmentRecord>>;  // of the experiments
   const auto answers = [&](const std::vector<std::string>& asked) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <set>
@@ -52,6 +53,24 @@ TEST_CASE("methods of a study: those of its file, the thesis's chain when it nam
   CHECK(study_methods(study) == shipped_methods().names());
   study.methods.clear();
   CHECK_THROWS_WITH(study_methods(study), Contains("methods.names: found no method"));
+}
+
+TEST_CASE("variants of methods are asked for by name, and are not among all of them") {
+  CHECK(shipped_methods().known({"sun:corrected", "sse+lasso"}, "x") == Names{"sun:corrected", "sse+lasso"});
+  for (const AssessmentMethodInfo& variant : shipped_methods().variants()) {
+    INFO(variant.name);
+    const Names all = shipped_methods().names();
+    CHECK(std::find(all.begin(), all.end(), variant.name) == all.end());
+    CHECK(&shipped_methods().method(variant.name) == &variant);
+    CHECK_FALSE(variant.options);  // [assessment.NAME] is that of the method
+  }
+  CHECK_THROWS_WITH(shipped_methods().known({"sun:correct"}, "k"), Contains("nearest: 'sun:corrected'"));
+  CHECK_FALSE(shipped_methods().has("yu-qin:corrected"));  // it does not look at y_sim
+  MethodTable table;
+  AssessmentMethodInfo mine = assessment_method("sse");
+  mine.name = "mine";
+  table.add(mine);
+  CHECK(table.has("mine:uncorrected"));
 }
 
 TEST_CASE("every method describes itself, and each of its numbers once") {

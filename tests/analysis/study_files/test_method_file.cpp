@@ -18,4 +18,11 @@ TEST_CASE("method file: a name is part of options, files, tables and pages, and 
   CHECK_FALSE(is_method_name(std::string(65, 'a')));
 }
 
+TEST_CASE("method file: answers are of a method, a variant of it, or a composite of two") {
+  for (const char* const name : {"mine", "sun:corrected", "sse+lasso", "mine+sun:corrected"})
+    CHECK(is_answering_name(name));
+  for (const char* const name : {"", ":corrected", "sun:", "sse+", "+lasso", "a:b c", "a+all"})
+    CHECK_FALSE(is_answering_name(name));
+}
+
 }  // namespace
