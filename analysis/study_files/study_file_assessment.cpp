@@ -26,11 +26,13 @@ OptionKeys assessment_keys(AssessmentOptions& options) {
           "setpoint of a CV that is held in a range. `\"controller\"`: none, as a range has none, so methods "
           "that need setpoints do not apply. `\"optimizer\"`: the steady state that the target optimizer "
           "computes (2.32), which chapter 2 of the thesis uses to show the consequences"),
-      key::choice("model", options.model, {"automatic", "nominal", "benchmark"},
-                  "what methods assume of the plant without a fault. `\"nominal\"`: it is exactly the model. "
-                  "`\"benchmark\"`: it differs from the model as the benchmark shows, and methods look for "
-                  "what is new since then. `\"automatic\"`: `\"benchmark\"` if the study has `[world]`, "
-                  "otherwise `\"nominal\"`, since the model of such a study is exact"),
+      key::choice(
+          "model", options.model,
+          "what methods assume of the plant without a fault. `\"nominal\"`: it is exactly the model. "
+          "`\"benchmark\"`: it differs from the model as the benchmark shows, and methods look for "
+          "what is new since then. `\"automatic\"`: `\"benchmark\"` if the study has `[world]`, if the "
+          "plant is a program or an FMU, or if it is nonlinear and its benchmark rejects an exact "
+          "model; otherwise `\"nominal\"`. `validate` and `run` say which it is"),
       key::number("model_error", options.model_error, NumberRule::positive(),
                   "prior standard deviation of the gain and time constant of each channel, relative; of its "
                   "dead time, as a fraction of the dead time or of a sample"),

@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "analysis/validation/study_warnings.hpp"
@@ -38,6 +39,7 @@
 #include "results/archive/archive.hpp"
 #include "results/document/document_text.hpp"
 #include "results/summary/summary.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {
@@ -77,6 +79,13 @@ void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
       warnings.push_back(std::move(warning));
   for (const StudyWarning& warning : warnings)
     progress.note(fmt::format("warning: {}: {}", warning.key, warning.found));
+}
+
+/// Of a nonlinear plant; the model of a linear one is exact, or its worlds say how far it is off.
+void tell_model_assumption(const Study& study, const BasisCase& basis, const QpSolverFactory& factory,
+                           Progress& progress) {
+  if (study.nonlinear && basis.trajectory.status == ControlStatus::ok)
+    progress.note(to_string(model_assumption(assessment_context(study, basis, factory))));
 }
 
 void run_whole(const RunArguments& options, const Study& study, const RunOptions& run_options,
@@ -183,8 +192,9 @@ ExitCode run(const RunArguments& options, const std::string& command_line) {
                            options.is_part() ? part_text(options.output)
                                              : output_text(options.output, shard_folder_of(options.output)));
   CampaignHooks hooks = hooks_of(progress);
-  hooks.on_basis = [&progress](const Study& of_run, const BasisCase& basis) {
+  hooks.on_basis = [&progress, &options](const Study& of_run, const BasisCase& basis) {
     warn_of(of_run, basis, progress);
+    tell_model_assumption(of_run, basis, qp_solver_factory(options.run.solver), progress);
   };
   const auto go_on = [&] {
     return how_to_resume(options, part ? part->path : shard_folder_of(options.output), command_line);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "analysis/validation/study_forecast.hpp"
 #include "analysis/validation/study_warnings.hpp"
@@ -18,6 +19,7 @@
 #include "bench/console/progress.hpp"
 #include "bench/execution/run_options.hpp"
 #include "results/text/number_json.hpp"
+#include "solvers/qp_solver_factory.hpp"
 
 namespace mpm {
 namespace {
@@ -37,6 +39,7 @@ struct ValidateArguments {
 struct Validation {
   StudyPilot pilot;
   std::vector<StudyWarning> warnings;
+  ModelAssumption assumption;
 };
 
 void append(std::vector<StudyWarning> more, std::vector<StudyWarning>& warnings) {
@@ -61,6 +64,8 @@ Validation validated(const ValidateArguments& arguments, Progress& progress) {
   }
   const Campaign& campaign = found.pilot.campaign;
   append(basis_warnings(campaign.study, campaign.basis), found.warnings);
+  found.assumption = model_assumption(
+      assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver)));
   append(forecast_warnings(campaign.study, found.pilot.forecast, campaign.records), found.warnings);
   return found;
 }
@@ -72,25 +77,27 @@ double megabytes(const StudyForecast& forecast, double share) {
 
 std::string validation_json(const Validation& found, int jobs) {
   const StudyForecast& forecast = found.pilot.forecast;
-  Json json{{"study", found.pilot.campaign.study.name},
-            {"warnings", Json::array()},
-            {"basis",
-             {{"healthy", found.pilot.campaign.basis.healthy},
-              {"explanation", found.pilot.campaign.basis.explanation}}},
-            {"experiments", forecast.experiments},
-            {"pilot", found.pilot.campaign.records.size()},
-            {"feasible", rate_json(forecast.feasible)},
-            {"impact", rate_json(forecast.impact)},
-            {"loops_with_impact", forecast.loops_with_impact},
-            {"loops_without_fault", forecast.loops_without_fault},
-            {"detection_width", forecast.detection_width},
-            {"false_alarm_width", forecast.false_alarm_width},
-            {"milliseconds_of_a_loop", found.pilot.milliseconds_of_a_loop},
-            {"methods", Json::array()},
-            {"jobs", jobs},
-            {"seconds", found.pilot.seconds},
-            {"megabytes",
-             {{"flagged", megabytes(forecast, forecast.to_keep.value)}, {"all", megabytes(forecast, 1.0)}}}};
+  Json json{
+      {"study", found.pilot.campaign.study.name},
+      {"warnings", Json::array()},
+      {"basis",
+       {{"healthy", found.pilot.campaign.basis.healthy},
+        {"explanation", found.pilot.campaign.basis.explanation}}},
+      {"assessment_model", {{"model", to_string(found.assumption.model)}, {"why", found.assumption.why}}},
+      {"experiments", forecast.experiments},
+      {"pilot", found.pilot.campaign.records.size()},
+      {"feasible", rate_json(forecast.feasible)},
+      {"impact", rate_json(forecast.impact)},
+      {"loops_with_impact", forecast.loops_with_impact},
+      {"loops_without_fault", forecast.loops_without_fault},
+      {"detection_width", forecast.detection_width},
+      {"false_alarm_width", forecast.false_alarm_width},
+      {"milliseconds_of_a_loop", found.pilot.milliseconds_of_a_loop},
+      {"methods", Json::array()},
+      {"jobs", jobs},
+      {"seconds", found.pilot.seconds},
+      {"megabytes",
+       {{"flagged", megabytes(forecast, forecast.to_keep.value)}, {"all", megabytes(forecast, 1.0)}}}};
   if (forecast.worlds > 0) {
     json["worlds"] = forecast.worlds;
     json["detection_width_limit"] = forecast.detection_width_limit;
@@ -125,6 +132,7 @@ std::string text_of(const Validation& found, int jobs) {
   if (found.warnings.empty())
     text += "no warnings\n";
   text += fmt::format("basis case: {}\n", found.pilot.campaign.basis.explanation);
+  text += to_string(found.assumption) + "\n";
   text += fmt::format("pilot: {} of {} experiments, {} feasible\n", found.pilot.campaign.records.size(),
                       forecast.experiments, forecast.feasible.hits);
   if (forecast.impact.total > 0)

@@ -9,6 +9,8 @@
 #include <typeindex>
 #include <vector>
 
+#include "base/enum_words.hpp"
+
 // The open choices of the methods that assess a controller ([assessment] of a study file). Each method alone
 // knows its own: a study holds them as values whose types it does not know.
 
@@ -65,10 +67,13 @@ enum class AssessmentSetpoints : std::int8_t {
 
 /// Which model the methods take the plant for where it has no fault.
 enum class AssessmentModel : std::int8_t {
-  automatic = 0,  ///< benchmark where the study has worlds, otherwise nominal
+  automatic = 0,  ///< benchmark where the model is not exact, otherwise nominal (model_assumption())
   nominal = 1,    ///< that of the controller, exactly
   benchmark = 2,  ///< it may be off by some percent, of which the benchmark says how much
 };
+
+template <>
+inline constexpr auto kWords<AssessmentModel> = word_list("automatic", "nominal", "benchmark");
 
 /// [assessment]
 struct AssessmentOptions : MethodOptions {

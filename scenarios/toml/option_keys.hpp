@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/enum_words.hpp"
 #include "scenarios/random/distribution.hpp"
 #include "scenarios/toml/number_rule.hpp"
 #include "scenarios/toml/toml_values.hpp"
@@ -173,6 +174,12 @@ OptionKey choice(std::string name, Value& value, std::vector<std::string> words,
     value = static_cast<Value>(read_one_of_or(table, key.name, words, static_cast<std::size_t>(value)));
   };
   return made;
+}
+
+/// The same of an enumeration that has its words.
+template <WordedEnum Value>
+OptionKey choice(std::string name, Value& value, std::string meaning) {
+  return choice(std::move(name), value, {kWords<Value>.begin(), kWords<Value>.end()}, std::move(meaning));
 }
 
 /// A list of tables, whose keys `below` ties to one Entry; `take` gets each that was read, in their order.

@@ -29,6 +29,7 @@ def main(program, study):
         assert said["pilot"] == 8 and said["experiments"] == 40 and said["basis"]["healthy"], said
         assert said["feasible"]["total"] == 8 and said["seconds"] > 0 and said["megabytes"]["all"] > 0, said
         assert [method["name"] for method in said["methods"]] == ["botelho"], said
+        assert said["assessment_model"] == {"model": "nominal", "why": "the plant without a fault is the model"}, said
         good = {warning["key"] for warning in said["warnings"]}
 
         text = run("validate", wrong, "--experiments", 8, "--methods", "botelho,sun", "--quiet").stdout

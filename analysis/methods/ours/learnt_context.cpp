@@ -3,7 +3,10 @@
 #include <cstdint>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/error.hpp"
+#include "plants/nonlinear/foreign_model.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/historian.hpp"
@@ -20,20 +23,53 @@ bool learns_from(const AssessedLoop& benchmark) {
          ((!benchmark.y.array().isNaN()).rowwise().count() >= kFewestLearnt).all();
 }
 
+/// As far as the study alone says it; `automatic` where the benchmark does.
+ModelAssumption stated_assumption(const Study& study) {
+  if (study.assessment.model != AssessmentModel::automatic)
+    return {study.assessment.model, "the study says so"};
+  if (study.world)
+    return {AssessmentModel::benchmark, "the study has worlds"};
+  if (!study.nonlinear)
+    return {AssessmentModel::nominal, "the plant without a fault is the model"};
+  if (const std::shared_ptr<const ForeignModel>& foreign = study.nonlinear->model.foreign)
+    return {AssessmentModel::benchmark, fmt::format("the plant is {}, which no linear model matches exactly",
+                                                    foreign->command().empty() ? "an FMU" : "a program")};
+  return {AssessmentModel::automatic, ""};
+}
+
 }  // namespace
+
+ModelAssumption model_assumption(const AssessmentContext& context) {
+  ModelAssumption stated = stated_assumption(context.study);
+  if (stated.model != AssessmentModel::automatic)
+    return stated;
+  const std::shared_ptr<const LearntModel> learnt = learnt_model(context);
+  if (!learnt)
+    return {AssessmentModel::nominal, "the benchmark of the nonlinear plant does not reject an exact model"};
+  return {
+      AssessmentModel::benchmark,
+      fmt::format("the benchmark rejects an exact model of {}",
+                  context.study.plant.cvs[static_cast<std::size_t>(*learnt->rejects_exact_model())].name)};
+}
+
+std::string to_string(const ModelAssumption& assumption) {
+  return fmt::format("assessment.model: {}, because {}", to_string(assumption.model), assumption.why);
+}
 
 void learn_model(const AssessedLoop& benchmark, AssessmentContext& context) {
   const AssessmentOptions& options = context.study.assessment;
-  const bool learns = options.model == AssessmentModel::automatic
-                          ? context.study.world.has_value()
-                          : options.model == AssessmentModel::benchmark;
-  if (!learns || !learns_from(benchmark) || out_of_proportion(context.study, benchmark))
+  const AssessmentModel stated = stated_assumption(context.study).model;
+  if (stated == AssessmentModel::nominal || !learns_from(benchmark) ||
+      out_of_proportion(context.study, benchmark))
     return;
   try {
-    context.correction = std::make_shared<const LearntModel>(context.study, context.basis.point.u, benchmark,
-                                                             options.model_error, options.bias);
+    auto learnt = std::make_shared<const LearntModel>(context.study, context.basis.point.u, benchmark,
+                                                      options.model_error, options.bias);
+    if (stated == AssessmentModel::benchmark || learnt->rejects_exact_model())
+      context.correction = std::move(learnt);
   } catch (const InputError& error) {
-    context.not_learnt = error.what();
+    if (stated == AssessmentModel::benchmark)
+      context.not_learnt = error.what();
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "analysis/basis/basis_case.hpp"
 #include "analysis/methods/assessed_loop.hpp"
@@ -13,16 +14,36 @@
 
 namespace mpm {
 
+/// What `assessment.model` means for loops under a context, and why, for people.
+struct ModelAssumption {
+  AssessmentModel model;  ///< nominal or benchmark
+  std::string why;        ///< a clause: "the plant is a program"
+};
+
+/// What AssessmentModel::automatic means under the context that learn_model() has filled:
+///
+/// | the plant                                         | means                                             |
+/// |---------------------------------------------------|---------------------------------------------------|
+/// | of a study with worlds                            | benchmark                                         |
+/// | a program or an FMU                               | benchmark                                         |
+/// | is nonlinear by equations of ours                 | benchmark if the benchmark rejects an exact model |
+/// |                                                   | (ModelErrors::rejects_exact_model()), or nominal  |
+/// | the linear model                                  | nominal                                           |
+ModelAssumption model_assumption(const AssessmentContext& context);
+
+/// "assessment.model: benchmark, because the plant is a program"
+std::string to_string(const ModelAssumption& assumption);
+
 /// Puts what `benchmark` shows of the errors of the model into the context, where its study wants that
-/// (AssessmentModel); nothing where it does not, or the benchmark has too few samples of a CV or lacks some
-/// of an input. Where the likelihood of what it shows has no number, `not_learnt` says so.
+/// (model_assumption()); nothing where it does not, or the benchmark has too few samples of a CV or lacks
+/// some of an input. Where the likelihood of what it shows has no number, `not_learnt` says so.
 void learn_model(const AssessedLoop& benchmark, AssessmentContext& context);
 
 /// What was learnt; null where nothing was.
 std::shared_ptr<const LearntModel> learnt_model(const AssessmentContext& context);
 
 /// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault;
-/// errors of the model are learnt from it where the study has worlds.
+/// errors of the model are learnt from it as model_assumption() says.
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory);
 
 }  // namespace mpm

@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <boost/math/special_functions/gamma.hpp>
 
 #include "analysis/identification/kalman_whitening.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
@@ -83,6 +84,27 @@ Coefficients coefficients(const BaseNoise& noise, const Eigen::Ref<const Eigen::
   const auto Z = white.bottomRows(white.rows() - 1);
   Eigen::MatrixXd covariance = (Z * Z.transpose() + Eigen::MatrixXd::Identity(Z.rows(), Z.rows())).inverse();
   return {covariance * (Z * white.row(0).transpose()), std::move(covariance)};
+}
+
+/// P-value of no errors: with the posterior of coefficients z ~ N(0, I), P = covariance^-1 - I is what the
+/// record tells of z and b = covariance^-1 mean ~ N(0, P) without errors. Directions in which it tells next
+/// to nothing have no freedom.
+double p_of_none(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) {
+  if (mean.size() == 0)
+    return 1.0;
+  const Eigen::MatrixXd precision = covariance.inverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> told(
+      precision - Eigen::MatrixXd::Identity(mean.size(), mean.size()));
+  const Eigen::VectorXd b = told.eigenvectors().transpose() * (precision * mean);
+  double chi_squared = 0.0;
+  int freedom = 0;
+  for (Eigen::Index i = 0; i < b.size(); ++i)
+    if (told.eigenvalues()(i) > kFaintDirection) {
+      chi_squared += b(i) * b(i) / told.eigenvalues()(i);
+      ++freedom;
+    }
+  return freedom > 0 && std::isfinite(chi_squared) ? boost::math::gamma_q(freedom / 2.0, chi_squared / 2.0)
+                                                   : 1.0;
 }
 
 /// The mean of a normal vector that is nowhere below `least`: what lies lowest below it is held there, one
@@ -177,6 +199,7 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
     series << left, unknown, wanders;
     const Coefficients known_errors = coefficients(noise_.best, series);
     covariance = known_errors.covariance.topLeftCorner(p, p);
+    exact_p_ = p_of_none(known_errors.mean.head(p), covariance);
     mean_ = bounded_mean(known_errors.mean.head(p), covariance, least_errors);
     take(with_errors(mean_));
   }
@@ -356,6 +379,12 @@ std::optional<ModelErrors> LearntModel::of_part(const Study& study, const Assess
     return std::nullopt;
   return ModelErrors(study, cv, relative_errors(study, cv, share_, bias_), e,
                      model_inputs(benchmark.from_start()), initial_, least_noise(benchmark.y_sim.row(cv)));
+}
+
+std::optional<Eigen::Index> LearntModel::rejects_exact_model() const {
+  const auto first =
+      std::find_if(cvs_.begin(), cvs_.end(), [](const ModelErrors& cv) { return cv.rejects_exact_model(); });
+  return first == cvs_.end() ? std::nullopt : std::optional<Eigen::Index>(first - cvs_.begin());
 }
 
 TransferMatrix LearntModel::plant() const {

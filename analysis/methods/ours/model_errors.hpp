@@ -67,6 +67,10 @@ class ModelErrors {
   const TransferMatrix& model() const { return model_; }
   const BaseNoise& noise() const { return noise_.best; }
   const NoisePosterior& noises() const { return noise_; }
+  /// Does the benchmark speak against a model without errors? It does where errors wander, or where the
+  /// score test of delta = 0 rejects: b = S' R^-1 e, with the noise and the constant taken out of both, is
+  /// N(0, S' R^-1 S) without errors, and b' (S' R^-1 S)^-1 b chi squared.
+  bool rejects_exact_model() const { return wanders() || exact_p_ < kRejectsExact; }
   /// Whether errors change along a healthy record, as those of a nonlinear plant do.
   bool wanders() const { return wander_ > 0.0; }
   /// Whether the benchmark shows more than a background beside the errors, so that these may be others than
@@ -95,6 +99,7 @@ class ModelErrors {
 
  private:
   static constexpr double kMostBackground = 1.0;  ///< slow part of the noise over the white one
+  static constexpr double kRejectsExact = 1e-4;   ///< p-value below which an exact model is rejected
 
   /// The response to a change of one channel: of an error, over one standard deviation to either side.
   struct Slope {
@@ -127,6 +132,7 @@ class ModelErrors {
   Eigen::VectorXd mean_;            ///< of the errors, over their D
   NoisePosterior noise_;
   Eigen::MatrixXd factor_;  ///< p x p: factor factor' is the covariance of the errors over their D
+  double exact_p_ = 1.0;    ///< p-value of a model without errors
   std::vector<Slope> slopes_, corrected_;  ///< of each error; of each channel that is corrected
 };
 
@@ -138,6 +144,8 @@ class LearntModel final : public ModelCorrection {
               const AssessedLoop& benchmark, double share, double bias);
 
   const ModelErrors& of(Eigen::Index cv) const { return cvs_[static_cast<std::size_t>(cv)]; }
+  /// The first CV whose benchmark rejects an exact model; none where no CV's does.
+  std::optional<Eigen::Index> rejects_exact_model() const;
   /// The same from the samples of the benchmark whose place `uses` is true for; none where they are too few.
   std::optional<ModelErrors> of_part(const Study& study, const AssessedLoop& benchmark, Eigen::Index cv,
                                      const std::function<bool(Eigen::Index)>& uses) const;

@@ -249,4 +249,17 @@ TEST_CASE("a loop is corrected by what its benchmark shows, a fault is not") {
   CHECK(deviation(*model.corrected(faulty)) > 0.8 * deviation(faulty));
 }
 
+TEST_CASE("the benchmark of an exact model seldom rejects it, that of an imperfect one does") {
+  const Study study = find_study("wood-berry");
+  constexpr int kRecords = 60;
+  int exact = 0, imperfect = 0;
+  for (int number = 0; number < kRecords; ++number) {
+    const auto stream = static_cast<std::uint64_t>(number);
+    exact += learnt(study, study.plant.G, stream).rejects_exact_model() ? 1 : 0;
+    imperfect += learnt(study, imperfect_plant(study, stream), stream).rejects_exact_model() ? 1 : 0;
+  }
+  CHECK(exact == 0);  // one in 10,000 is expected
+  CHECK(imperfect > kRecords / 2);
+}
+
 }  // namespace mpm

@@ -1,0 +1,61 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/basis/basis_runs.hpp"
+#include "analysis/methods/ours/learnt_context.hpp"
+#include "analysis/study_files/study_library.hpp"
+#include "plants/outside/program_model.hpp"
+#include "tests/solvers/active_set_factory.hpp"
+
+// What `assessment.model = "automatic"` means.
+
+namespace mpm {
+namespace {
+
+struct Assumed {
+  ModelAssumption assumption;
+  bool corrects;
+};
+
+Assumed assumed(const Study& study, const BasisCase& basis) {
+  const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
+  return {model_assumption(context), context.correction != nullptr};
+}
+
+}  // namespace
+
+TEST_CASE("the plant and its benchmark decide whether the model is taken for exact") {
+  Study linear = find_study("wood-berry");
+  const Assumed exact = assumed(linear, run_basis_case(linear, testing::kFactory));
+  CHECK(exact.assumption.model == AssessmentModel::nominal);
+  CHECK_FALSE(exact.corrects);
+
+  Study tank = find_study("chapter5-tank");
+  const BasisCase of_tank = run_basis_case(tank, testing::kFactory);
+  REQUIRE(tank.nonlinear);
+  const Assumed curved = assumed(tank, of_tank);
+  CHECK(curved.assumption.model == AssessmentModel::benchmark);
+  CHECK(curved.corrects);
+  CHECK(curved.assumption.why.find("rejects an exact model of h") != std::string::npos);
+
+  // The benchmark is that of the tank: nothing starts the program.
+  Study program = tank;
+  ProgramSettings settings;
+  settings.command = {"nobody-starts-this"};
+  program.nonlinear->model.foreign = program_model(settings, {.settle = 1.0});
+  const Assumed foreign = assumed(program, of_tank);
+  CHECK(foreign.assumption.model == AssessmentModel::benchmark);
+  CHECK(foreign.corrects);
+  CHECK(to_string(foreign.assumption) ==
+        "assessment.model: benchmark, because the plant is a program, which no linear model matches exactly");
+
+  for (Study* const study : {&linear, &tank, &program})
+    study->assessment.model = AssessmentModel::nominal;
+  CHECK_FALSE(assumed(tank, of_tank).corrects);
+  CHECK_FALSE(assumed(program, of_tank).corrects);
+}
+
+}  // namespace mpm
