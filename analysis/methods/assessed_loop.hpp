@@ -131,7 +131,6 @@ struct AssessmentContext {
   std::shared_ptr<const Study> benchmark_study = {};
   /// What the benchmark shows of the errors of the model; null: the model is taken for exact.
   std::shared_ptr<const ModelCorrection> correction = {};
-  std::string not_learnt = {};  ///< why nothing can be learnt of them, where it should be; otherwise empty
   std::shared_ptr<const DerivedValues> of_benchmark = std::make_shared<const DerivedValues>();
   DerivedValues derived = {};
 

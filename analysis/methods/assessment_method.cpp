@@ -41,9 +41,7 @@ std::optional<std::string> unusable_benchmark(const AssessmentContext& context) 
     return std::nullopt;
   if (const std::optional<std::string> found = out_of_proportion(context.study, *context.benchmark))
     return fmt::format("the benchmark is out of all proportion: {}", *found);
-  return context.not_learnt.empty()
-             ? std::nullopt
-             : std::optional("the benchmark does not show the errors of the model: " + context.not_learnt);
+  return std::nullopt;
 }
 
 bool some_setpoint_moves(const AssessedLoop& loop) {

@@ -43,7 +43,7 @@ std::vector<AssessmentRecord> MethodPanel::assessed(const AssessmentForms& forms
     // for.
     const bool same_basis = &own->basis == &context_.basis;
     of_own.emplace(AssessmentContext{own->study, own->basis, context_.factory, context_.benchmark,
-                                     context_.benchmark_study, context_.correction, context_.not_learnt,
+                                     context_.benchmark_study, context_.correction,
                                      same_basis ? context_.of_benchmark : kept_values()});
     of_own->derived.keep(PaidBy::first);
   }

@@ -23,6 +23,42 @@ bool learns_from(const AssessedLoop& benchmark) {
          ((!benchmark.y.array().isNaN()).rowwise().count() >= kFewestLearnt).all();
 }
 
+/// The errors of the model, learnt by the first who asks for them: a method that does not costs nothing.
+class LearntWhenAsked final : public ModelCorrection {
+ public:
+  LearntWhenAsked(const AssessmentContext& context, AssessedLoop benchmark)
+      : study_(context.study), initial_u_(context.basis.point.u), benchmark_(std::move(benchmark)) {}
+
+  /// Throws InputError where the likelihood of what the benchmark shows has no number.
+  std::shared_ptr<const LearntModel> model() const {
+    if (!model_ && failure_.empty())
+      learn();
+    if (!model_)
+      throw InputError("the benchmark does not show the errors of the model: " + failure_);
+    return model_;
+  }
+  std::shared_ptr<const AssessedLoop> corrected(const AssessedLoop& loop) const override {
+    return model()->corrected(loop);
+  }
+
+ private:
+  void learn() const {
+    const AssessmentOptions& options = study_.assessment;
+    try {
+      model_ = std::make_shared<const LearntModel>(study_, initial_u_, benchmark_, options.model_error,
+                                                   options.bias);
+    } catch (const InputError& error) {
+      failure_ = error.what();
+    }
+  }
+
+  const Study& study_;
+  const Eigen::VectorXd initial_u_;
+  const AssessedLoop benchmark_;
+  mutable std::shared_ptr<const LearntModel> model_;
+  mutable std::string failure_;
+};
+
 /// As far as the study alone says it; `automatic` where the benchmark does.
 ModelAssumption stated_assumption(const Study& study) {
   if (study.assessment.model != AssessmentModel::automatic)
@@ -57,24 +93,21 @@ std::string to_string(const ModelAssumption& assumption) {
 }
 
 void learn_model(const AssessedLoop& benchmark, AssessmentContext& context) {
-  const AssessmentOptions& options = context.study.assessment;
   const AssessmentModel stated = stated_assumption(context.study).model;
   if (stated == AssessmentModel::nominal || !learns_from(benchmark) ||
       out_of_proportion(context.study, benchmark))
     return;
+  auto learnt = std::make_shared<const LearntWhenAsked>(context, benchmark);
   try {
-    auto learnt = std::make_shared<const LearntModel>(context.study, context.basis.point.u, benchmark,
-                                                      options.model_error, options.bias);
-    if (stated == AssessmentModel::benchmark || learnt->rejects_exact_model())
+    if (stated == AssessmentModel::benchmark || learnt->model()->rejects_exact_model())
       context.correction = std::move(learnt);
-  } catch (const InputError& error) {
-    if (stated == AssessmentModel::benchmark)
-      context.not_learnt = error.what();
+  } catch (const InputError&) {  // what shows no errors does not reject an exact model
   }
 }
 
 std::shared_ptr<const LearntModel> learnt_model(const AssessmentContext& context) {
-  return std::dynamic_pointer_cast<const LearntModel>(context.correction);
+  const auto learnt = std::dynamic_pointer_cast<const LearntWhenAsked>(context.correction);
+  return learnt ? learnt->model() : nullptr;
 }
 
 AssessmentContext assessment_context(const Study& study, const BasisCase& basis, QpSolverFactory factory) {

@@ -36,10 +36,11 @@ std::string to_string(const ModelAssumption& assumption);
 
 /// Puts what `benchmark` shows of the errors of the model into the context, where its study wants that
 /// (model_assumption()); nothing where it does not, or the benchmark has too few samples of a CV or lacks
-/// some of an input. Where the likelihood of what it shows has no number, `not_learnt` says so.
+/// some of an input. They are learnt by the first method that asks for them; it fails where the likelihood
+/// of what the benchmark shows has no number. Study and basis of the context must outlive it.
 void learn_model(const AssessedLoop& benchmark, AssessmentContext& context);
 
-/// What was learnt; null where nothing was.
+/// What was learnt; null where nothing was. Throws InputError as the first method that asks for it.
 std::shared_ptr<const LearntModel> learnt_model(const AssessmentContext& context);
 
 /// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault;
