@@ -38,6 +38,8 @@
 #include "results/blind/verdict_file.hpp"
 #include "results/document/document_json.hpp"
 #include "results/document/document_text.hpp"
+#include "results/plot/figure_drawing.hpp"
+#include "results/report/comparison_figures.hpp"
 #include "results/summary/comparison.hpp"
 
 namespace mpm {
@@ -60,6 +62,7 @@ struct CompareArguments {
   bool full = false;
   bool json = false;
   bool quiet = false;
+  std::string latex, figure;  ///< files of the overview, for a paper; none when empty
 };
 
 /// Throws InputError for a method that neither this program nor the archive has, or one that is named twice.
@@ -226,11 +229,21 @@ std::string compare_part(const ComparisonTask& task, Progress& progress) {
                      part.number, part.of);
 }
 
+/// The overview as files, for those who write a paper.
+void write_overview(const CompareArguments& options, const Campaign& shown, const StudyFindings& findings) {
+  if (!options.latex.empty())
+    write_text(options.latex, comparison_latex(shown, findings));
+  if (!options.figure.empty())
+    write_text(options.figure, draw_figure(comparison_rates_figure(shown.study, findings.methods),
+                                           figure_format_of(options.figure)));
+}
+
 /// How often each of the methods that are asked for is right; the archive with all of them is written when an
 /// output is asked for.
 std::string found_text(const ComparisonTask& task, FailureTally& failures) {
   const CompareArguments& options = task.options;
   const auto text = [&](const Campaign& shown, const StudyFindings& findings) {
+    write_overview(options, shown, findings);
     const Document document = comparison_document(shown, findings);
     return options.json ? document_json(document) : document_text(document, kTerminalWidth, options.full);
   };
@@ -305,6 +318,11 @@ std::string intended_text(const ComparisonTask& task) {
 
 /// Refuses an output that is an input or cannot be written, and parts that would have no place.
 void require_output(const CompareArguments& options) {
+  for (const std::string& file : {options.latex, options.figure})
+    if (!file.empty())
+      require_output_folder(file, "overview");
+  if (!options.figure.empty())
+    figure_format_of(options.figure);
   if (options.output.empty()) {
     if (!options.shard.empty())
       throw InputError("--shard", "no --output", "an --output, beside which the parts are kept");
@@ -374,6 +392,9 @@ void add_compare(CommandSet& commands) {
            "Archive to write, with the comparison in it (HDF5); may be ARCHIVE itself. Finished work is kept "
            "beside it until then, and the same command resumes it");
   add_experiments(app, options->experiments, "Compare only the first N experiments");
+  add_path(app, "--latex", options->latex, "Table of the overview to write, for a paper: NAME.tex");
+  add_path(app, "--figure", options->figure,
+           "Figure of all rates with their intervals to write: NAME.svg, NAME.pdf or NAME.png");
   add_part_of(app, options->shard, "loops");
   app.add_flag("--discard", options->discard,
                "Delete what an interrupted comparison of this output has finished, and start again");

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
+#include "results/document/document_latex.hpp"
 #include "results/files/csv_text.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/suite/leaderboard_output.hpp"
@@ -32,53 +35,6 @@ bool has_numbers(const Leaderboard& board, const BoardColumn& column) {
 
 std::string csv_number(double value) {
   return std::isnan(value) ? "" : fmt::format("{}", value);
-}
-
-/// In one line.
-std::string latex_text(const std::string& text) {
-  std::string escaped;
-  for (const char letter : shown_text(text))
-    switch (letter) {
-      case '\\':
-        escaped += "\\textbackslash{}";
-        break;
-      case '^':
-        escaped += "\\textasciicircum{}";
-        break;
-      case '~':
-        escaped += "\\textasciitilde{}";
-        break;
-      default:
-        if (std::string_view("&%$#_{}").find(letter) != std::string_view::npos)
-          escaped += '\\';
-        escaped += letter;
-    }
-  return escaped;
-}
-
-/// A heading in two lines, broken at the space next to its middle, so that the table fits a page:
-/// "\shortstack[r]{Healthy,\\calibrated}"
-std::string latex_heading(const std::string& heading) {
-  std::size_t best = std::string::npos;
-  const auto off = [&heading](std::size_t place) {
-    return std::abs(2 * static_cast<std::int64_t>(place) - std::ssize(heading));
-  };
-  for (std::size_t space = heading.find(' '); space != std::string::npos;
-       space = heading.find(' ', space + 1))
-    if (best == std::string::npos || off(space) < off(best))
-      best = space;
-  if (best == std::string::npos)
-    return latex_text(heading);
-  return fmt::format("\\shortstack[r]{{{}\\\\{}}}", latex_text(heading.substr(0, best)),
-                     latex_text(heading.substr(best + 1)));
-}
-
-/// "89 (86--90)", with a mark for a method that does not answer on all loops.
-std::string latex_number(const Number& number, bool in_part) {
-  if (std::isnan(number.value))
-    return "--";
-  return fmt::format("{:.0f} ({:.0f}--{:.0f}){}", 100 * number.value, 100 * number.interval.lower,
-                     100 * number.interval.upper, in_part ? "$^\\sim$" : "");
 }
 
 }  // namespace
@@ -143,26 +99,25 @@ std::string leaderboard_csv(const Leaderboard& board) {
 
 std::string leaderboard_latex(const Leaderboard& board) {
   const std::vector<BoardColumn> columns = board_columns(board);
-  std::string text = fmt::format(
-      "% {} {}, seed {}, mpmbench {}: % of loops with {:g} % intervals.\n"
-      "% $\\sim$: it gives verdicts on fewer than {:g} % of the loops.\n"
-      "% \\usepackage{{booktabs}}\n\\begingroup\\small\\setlength{{\\tabcolsep}}{{3pt}}% fits the text of "
-      "article\n"
-      "\\begin{{tabular}}{{l{}}}\n\\toprule\nMethod",
-      latex_text(board.suite), latex_text(board.version), board.seed, latex_text(board.program),
-      100 * board.confidence, 100 * kFewestAnswers, std::string(columns.size(), 'r'));
+  Table table("", {{"Method", Table::Align::left}});
   for (const BoardColumn& column : columns)
-    text += " & " + latex_heading(heading_of(column.name));
-  text += " \\\\\n\\midrule\n";
+    table.columns.push_back({heading_of(column.name)});
   for (const std::size_t method : board_order(board)) {
-    const std::string name = latex_text(board.methods[method]);
-    text += board.is_own(method) ? fmt::format("\\textbf{{{}}}", name) : name;
-    for (const BoardColumn& column : columns)
-      text +=
-          " & " + latex_number(board_number(board, method, column), board.overall[method].answers_in_part());
-    text += " \\\\\n";
+    std::vector<Cell> cells{as_label(board.methods[method])};
+    if (board.is_own(method))
+      cells.front().tone = Cell::Tone::strong;
+    for (const BoardColumn& column : columns) {
+      Cell& cell = cells.emplace_back(board_number(board, method, column));
+      if (board.overall[method].answers_in_part() && !std::isnan(std::get<Number>(cell.content).value))
+        cell.mark = "~";
+    }
+    table.row(std::move(cells));
   }
-  return text + "\\bottomrule\n\\end{tabular}\\endgroup\n";
+  return table_latex(
+      table,
+      as_label(fmt::format("{} {}, seed {}, mpmbench {}: % of loops with {:g} % intervals.", board.suite,
+                           board.version, board.seed, board.program, 100 * board.confidence)) +
+          fmt::format("\n~: it gives verdicts on fewer than {:g} % of the loops.", 100 * kFewestAnswers));
 }
 
 }  // namespace mpm

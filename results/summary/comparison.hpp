@@ -22,7 +22,13 @@ std::string comparison_answer(const StudyFindings& findings);
 /// The rates that matter most, of those that some loop counts for.
 std::vector<std::string> overview_rates(const StudyFindings& findings);
 
-/// A table of them, one row a method, for one screen.
+/// A table of them, one row a method that gave a verdict, the best one first.
+Table overview_table(const Campaign& campaign, const StudyFindings& findings);
+
+/// The same for a paper (table_latex()).
+std::string comparison_latex(const Campaign& campaign, const StudyFindings& findings);
+
+/// The table with what there is to say of it, for one screen.
 Section comparison_overview(const Campaign& campaign, const StudyFindings& findings);
 
 /// How often each method of the campaign is right, side by side, and which of two is right where the other is

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/findings/method_rates.hpp"
+#include "results/document/document_latex.hpp"
 #include "results/plot/plot_text.hpp"
 #include "results/summary/comparison.hpp"
 
@@ -26,6 +27,11 @@ bool is_counted(const StudyFindings& findings, std::string_view rate) {
   return !rate.empty() &&
          std::any_of(findings.methods.begin(), findings.methods.end(),
                      [rate](const MethodFindings& method) { return method.rates[rate].total > 0; });
+}
+
+/// What the mark of overview_cell() means.
+std::string in_part_words() {
+  return fmt::format("~: verdicts on fewer than {:g} % of the loops.", 100 * kFewestAnswers);
 }
 
 /// Methods by the first of these rates that some loop counts for, the best one first.
@@ -119,10 +125,7 @@ std::string comparison_answer(const StudyFindings& findings) {
          own;
 }
 
-Section comparison_overview(const Campaign& campaign, const StudyFindings& findings) {
-  Section section{"comparison", "Which method is right most often?"};
-  if (const std::string answer = comparison_answer(findings); !answer.empty())
-    section.say(answer);
+Table overview_table(const Campaign& campaign, const StudyFindings& findings) {
   const std::vector<std::string> columns = overview_rates(findings);
   Table table(
       fmt::format(
@@ -137,26 +140,43 @@ Section comparison_overview(const Campaign& campaign, const StudyFindings& findi
   for (const std::string& column : columns)
     table.columns.push_back({heading_of(column)});
   table.columns.push_back({kRunTime.heading});
-  bool in_part = false;
-  std::vector<std::string> silent;
   for (const MethodFindings* const method : by_rank(findings)) {
-    if (method->rates["answered"].hits == 0) {
-      silent.push_back(method->name());
+    if (method->rates["answered"].hits == 0)
       continue;
-    }
     std::vector<Cell> cells{as_label(method->name())};
     for (const std::string& column : columns)
       cells.push_back(overview_cell(method->rates, column));
     cells.emplace_back(Number{method->rates.milliseconds});
     table.row(std::move(cells));
-    in_part = in_part || method->rates["answered"].value < kFewestAnswers;
   }
-  if (!table.rows.empty())
+  return table;
+}
+
+std::string comparison_latex(const Campaign& campaign, const StudyFindings& findings) {
+  const Table table = overview_table(campaign, findings);
+  return table_latex(table, fmt::format("{}, seed {}, mpmbench {}. {}\n{}", as_label(campaign.study.name),
+                                        campaign.study.seed, as_label(campaign.info.mpmbench_version),
+                                        table.caption, in_part_words()));
+}
+
+Section comparison_overview(const Campaign& campaign, const StudyFindings& findings) {
+  Section section{"comparison", "Which method is right most often?"};
+  if (const std::string answer = comparison_answer(findings); !answer.empty())
+    section.say(answer);
+  if (Table table = overview_table(campaign, findings); !table.rows.empty())
     section.add(std::move(table));
+  std::vector<std::string> silent;
+  bool in_part = false;
+  for (const MethodFindings& method : findings.methods) {
+    const Rate& answered = method.rates["answered"];
+    if (answered.hits == 0)
+      silent.push_back(method.name());
+    in_part = in_part || (answered.hits > 0 && answered.value < kFewestAnswers);
+  }
   if (!silent.empty())
     section.say(fmt::format("No verdict on any loop: {}.", listed(silent)));
   if (in_part)
-    section.say(fmt::format("~: verdicts on fewer than {:g} % of the loops.", 100 * kFewestAnswers));
+    section.say(in_part_words());
   return section;
 }
 

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from xml.etree import ElementTree
 
 import h5py
 import numpy
@@ -167,6 +168,19 @@ def check_other_commands(compare, archive, later):
     compare.run("check", later, "--gates", gates, code=1)
 
 
+def check_paper(compare, later):
+    """The overview as a table and a figure of a paper, in the order of the screen."""
+    table, figure = compare.folder / "overview.tex", compare.folder / "overview.svg"
+    shown = compare.run("compare", later, "--methods", "botelho,sse,sun", "--latex", table, "--figure", figure)
+    lines = [line.split(" & ") for line in table.read_text(encoding="utf-8").splitlines() if " & " in line]
+    methods = [line[0] for line in lines[1:]]
+    assert sorted(methods) == ["botelho", "sse", "sun"], lines
+    assert methods == sorted(methods, key=lambda name: shown.index(f"\n{name} ")), (methods, shown)
+    assert len({len(line) for line in lines}) == 1 and "\\begin{tabular}{l" in table.read_text(encoding="utf-8")
+    assert ElementTree.parse(figure).getroot().tag.endswith("svg")
+    assert "allowed: " in compare.run("compare", later, "--figure", compare.folder / "overview.gif", code=2)
+
+
 def check_refusals(compare, archive):
     before = sorted(compare.folder.iterdir())
     for command in ("compare", archive), ("run", "chapter6", "-o", compare.folder / "none.h5"):
@@ -217,6 +231,7 @@ def main(program):
         check_nothing_twice(compare, later)
         check_archive(compare, archive, later)
         check_other_commands(compare, archive, later)
+        check_paper(compare, later)
         check_refusals(compare, archive)
         check_no_loop(compare, archive)
         check_unfit_options(compare)

@@ -181,6 +181,7 @@ TEST_CASE("hostile texts: pages, tables and files of a campaign take them as tex
     check_html(document_html(document));
     CHECK_NOTHROW(nlohmann::json::parse(document_json(document)));
   }
+  check_latex(comparison_latex(campaign, findings));
 
   GateCheck check =
       check_gates(campaign, parse_gates("[[gate]]\naggregate = 'experiments'\nminimum = 1\nreason = 'r'\n",
