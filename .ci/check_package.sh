@@ -2,7 +2,7 @@
 # Makes the Debian packages, installs them in a bare Debian 12 of its own, and uses them there as a stranger would: a
 # study and its report, and a function of one's own on the board from Python, without the source tree. Needs root and debootstrap, and takes minutes; it is not one of the tests.
 #
-#   .ci/check_package.sh [EXPERIMENTS]    400 unless told
+#   .ci/check_package.sh [EXPERIMENTS]    400 unless told; PACKAGES: folder in which to leave the packages
 set -euo pipefail
 # shellcheck source=.ci/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -13,15 +13,16 @@ mpm_build all
 work=$(mktemp -d)
 trap 'rm -rf --one-file-system "$work"' EXIT
 bare=$work/bare
+packages=${PACKAGES:-$work/packages}
 
-(cd "$root/build/release" && cpack -B "$work/packages")
+(cd "$root/build/release" && cpack -B "$packages" && rm -rf "$packages/_CPack_Packages")
 debootstrap --variant=minbase bookworm "$bare"
 
 # Packages come from where this machine has them from.
 cp -a /etc/apt/apt.conf.d/. "$bare/etc/apt/apt.conf.d/"
 cp /etc/resolv.conf "$bare/etc/resolv.conf"
-cp "$work"/packages/mpmbench_*.deb "$bare/tmp/mpmbench.deb"
-cp "$work"/packages/python3-mpmbench_*.deb "$bare/tmp/python3-mpmbench.deb"
+cp "$packages"/mpmbench_*.deb "$bare/tmp/mpmbench.deb"
+cp "$packages"/python3-mpmbench_*.deb "$bare/tmp/python3-mpmbench.deb"
 (cd "$root" && python3 -c 'import sys; sys.path.insert(0, "tests/python"); import check_package; print(check_package.TEN_LINES)') \
   >"$bare/tmp/ten_lines.py"
 
