@@ -209,7 +209,31 @@ def check_given_numbers(run, folder):
     assert written.count("# To do: no column is called like") == 2
 
 
-def check_levels(run, folder):
+def check_proposed_benchmark(run, folder):
+    """The quarter of a file in which its CV is quiet is proposed, in a comment that `assess` takes once the # is gone."""
+    stream, rows = random.Random(8), []
+    for k in range(2400):
+        quiet = 300 <= k < 1000
+        u = 1.0 if k // 50 % 2 else -1.0
+        rows.append(f"2024-03-{1 + k // 1440:02} {k // 60 % 24:02}:{k % 60:02},{u * 0.2 + stream.gauss(0, 0.1 if quiet else 1.0):.4f},{u}")
+    record, study = folder / "quiet.csv", folder / "quiet.toml"
+    record.write_text("time,y,u\n" + "\n".join(rows) + "\n")
+    run("init", study, "--data", record, "--cvs", "y", "--mvs", "u", "--gains", 0.2, "--time-constants", 2)
+    text = study.read_text()
+    begin, end = tomllib.loads(re.search(r"^# (benchmark = \[.*)$", text, re.M)[1])["benchmark"]
+    row = [line.partition(",")[0] for line in rows].index
+    assert 300 <= row(begin) < row(end) < 1000 and row(end) - row(begin) > 500, (begin, end)
+    study.write_text(re.sub(r"^# (benchmark = \[)", r"\1", text, flags=re.M))
+    said = run("assess", study, record, "--trials", 0, "--json")
+    assert json.loads(said.stdout), said
+    # A short file has no quarter that tells anything.
+    record.write_text("time,y,u\n" + "\n".join(rows[:200]) + "\n")
+    assert "# benchmark" not in run("init", "-", "--data", record, "--cvs", "y", "--mvs", "u", "--gains", 1,
+                                    "--time-constants", 2).stdout
+
+
+def check_levels(run, folder)
+def check_proposed_benchmark(run, folder):
     """Levels: a ramp of coefficients is a channel that integrates, the study runs, and identify finds it again."""
     model = folder / "levels.csv"
     model.write_text("time,level/inflow,level/outflow,pressure/inflow\n" + "".join(
