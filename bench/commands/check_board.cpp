@@ -3,32 +3,40 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/findings/board_rerun.hpp"
 #include "analysis/findings/finished_board.hpp"
+#include "analysis/findings/method_rates.hpp"
 #include "analysis/study_files/suite_file.hpp"
 #include "base/error.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
 #include "bench/version.hpp"
+#include "results/document/document.hpp"
 #include "results/document/document_text.hpp"
+#include "results/plot/plot_text.hpp"
 #include "results/suite/board_file.hpp"
 #include "results/suite/leaderboard_output.hpp"
 
 namespace mpm {
 namespace {
 
+constexpr double kSignificance = 0.05;  // of all rates of a rerun together
+
 struct CheckBoardArguments {
   std::string board;
   std::string suite;
+  std::string rerun;  ///< the board of a run on another seed; empty: none
 };
 
-/// Why these results cannot stand on the board of the suite, in sentences.
+/// What keeps these results from the board of the suite, in sentences.
 std::vector<std::string> troubles_of(const Suite& suite, const FinishedBoard& board,
                                      const FinishedBoard& finished, const JoinedBoard& joined) {
   std::vector<std::string> troubles = joined.notes;
@@ -46,10 +54,69 @@ std::vector<std::string> troubles_of(const Suite& suite, const FinishedBoard& bo
   return troubles;
 }
 
-/// Reads the results of methods, holds them against the finished board of their suite, and says whether they
-/// could stand on it, and where.
+std::string suite_of(const CheckBoardArguments& options) {
+  return options.suite.empty() ? board_heading(options.board).suite : options.suite;
+}
+
+/// What the file says of its methods, without a place among others: nobody has run them again.
+Section stated_section(const Leaderboard& board) {
+  Section section = standing_section(board);
+  section.title = "What the file says";
+  section.content.erase(section.content.begin(), section.content.end() - 1);  // all but the table
+  return section;
+}
+
+/// The rates of the file against those of a run of the same methods on another seed.
+std::vector<RerunRate> rates_again(const CheckBoardArguments& options, const Suite& suite,
+                                   const FinishedBoard& board) {
+  const BoardHeading heading = board_heading(options.rerun);
+  if (heading.seed == suite.seed)
+    throw InputError("--rerun",
+                     fmt::format("{} under seed {}, that of the suite", options.rerun, heading.seed),
+                     "a run under another seed, which nobody knew before");
+  const Suite again = find_suite(suite_of(options), {.seed = heading.seed});
+  std::vector<std::string_view> rates = question_rates();
+  for (const std::string_view name : {"answered", "false_alarm_healthy", "false_alarm_calibrated", "located"})
+    rates.push_back(name);
+  std::vector<RerunRate> found = rerun_rates(leaderboard_of(suite, board),
+                                             leaderboard_of(again, read_board(options.rerun, again)), rates);
+  if (found.empty())
+    throw InputError("--rerun",
+                     fmt::format("{} with none of {}", options.rerun, fmt::join(board.methods, ", ")),
+                     "a run of these methods");
+  return found;
+}
+
+Section rerun_section(const std::vector<RerunRate>& rates, const std::string& file) {
+  Section section{"rerun", "The same methods on another seed"};
+  Table table(fmt::format("% of all loops with 95 % interval: the file, and {}", as_label(file)),
+              {{"Method", Table::Align::left},
+               {"Rate", Table::Align::left},
+               {"file"},
+               {"rerun"},
+               {"difference"},
+               {"p, corrected"}});
+  for (const RerunRate& each : rates)
+    table.row(
+        {as_label(each.method), heading_of(each.rate), number(each.stated, NumberForm::whole_percent),
+         number(each.again, NumberForm::whole_percent),
+         Number{each.difference.value, NumberForm::whole_percent, each.difference.interval},
+         Cell(fixed(each.p_holm)).toned(each.differs(kSignificance) ? Cell::Tone::bad : Cell::Tone::plain)});
+  section.add(std::move(table));
+  const auto other = std::count_if(rates.begin(), rates.end(),
+                                   [](const RerunRate& each) { return each.differs(kSignificance); });
+  section.say(other == 0 ? fmt::format("No rate differs beyond chance (p < {:g}, corrected for {} rates).",
+                                       kSignificance, rates.size())
+                         : fmt::format("{} of {} rates differ beyond chance: the file is not what the method "
+                                       "answers.",
+                                       other, rates.size()));
+  return section;
+}
+
+/// Reads the results of methods, holds them against the suite and its finished board, and against a run on
+/// another seed where there is one. No file can prove that a method gave its answers.
 ExitCode check_board(const CheckBoardArguments& options) {
-  const Suite suite = find_suite(options.suite.empty() ? board_heading(options.board).suite : options.suite);
+  const Suite suite = find_suite(suite_of(options));
   const FinishedBoard board = read_board(options.board, suite);
   const FinishedBoard finished = read_board(finished_board_path(suite), suite);
   const JoinedBoard joined = join_boards(suite, board.methods, board.program, board.cells, finished);
@@ -63,23 +130,40 @@ ExitCode check_board(const CheckBoardArguments& options) {
                                  suite.cells.size(), suite.name, suite.version, experiments, board.runner());
   for (const std::string& trouble : troubles)
     text += wrapped("- " + trouble, kLeaderboardWidth, "  ");
-  text += troubles.empty() ? "It can stand on the board.\n" : "It cannot stand on the board as it is.\n";
+  text += wrapped(
+      troubles.empty()
+          ? "Checked: suite, version and seed; the studies, kinds, CVs and worlds of all loops are those "
+            "that "
+            "the suite draws; names are free; no answer is impossible. Not checked, and no file can show it: "
+            "that the method gave these answers. A maintainer's rerun on a fresh seed decides (--rerun)."
+          : "It cannot be submitted as it is.",
+      kLeaderboardWidth);
 
-  Document standing;
-  standing.sections.push_back(standing_section(joined.board));
-  print_result(text + document_text(standing, kLeaderboardWidth));
-  return troubles.empty() ? ExitCode::done : ExitCode::comparison_failed;
+  Document document;
+  document.sections.push_back(stated_section(leaderboard_of(suite, board)));
+  bool agrees = true;
+  if (!options.rerun.empty()) {
+    const std::vector<RerunRate> rates = rates_again(options, suite, board);
+    agrees = std::none_of(rates.begin(), rates.end(),
+                          [](const RerunRate& each) { return each.differs(kSignificance); });
+    document.sections.push_back(rerun_section(rates, options.rerun));
+  }
+  print_result(text + document_text(document, kLeaderboardWidth));
+  return troubles.empty() && agrees ? ExitCode::done : ExitCode::comparison_failed;
 }
 
 }  // namespace
 
 void add_check_board(CommandSet& commands) {
   const auto options = std::make_shared<CheckBoardArguments>();
-  CLI::App& app =
-      commands.add("check-board", "Can the results of a method stand on the finished board of a suite?",
-                   [options] { return check_board(*options); });
+  CLI::App& app = commands.add(
+      "check-board", "Are the results of a method complete and possible, and does a rerun agree with them?",
+      [options] { return check_board(*options); });
   add_path(app, "BOARD", options->board, "SUITE.board.json that `suite` has written")->required();
   add_path(app, "--suite", options->suite, "File of a suite of one's own (default: the shipped one)");
+  add_path(app, "--rerun", options->rerun,
+           "SUITE.board.json of the same methods under another seed (suite --seed N): its rates are compared "
+           "with those of the file");
 }
 
 }  // namespace mpm

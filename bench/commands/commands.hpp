@@ -22,7 +22,7 @@ AddCommand add_summary;      // what a study found, as text or JSON
 AddCommand add_suite;        // plants and families of experiments, and the leaderboard of the methods
 AddCommand add_sweep;        // runs a study once for each value of its open choices
 AddCommand add_check;        // holds an archive against limits
-AddCommand add_check_board;  // can the results of a method stand on the finished board of a suite?
+AddCommand add_check_board;  // are the results of a method complete, and does a rerun agree with them?
 AddCommand add_report;       // what a study found, as a page and figures
 AddCommand add_plot;         // draws the loop of one experiment
 AddCommand add_compare;      // several methods of assessment on the loops of an archive

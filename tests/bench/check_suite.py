@@ -316,7 +316,15 @@ def check_joined(tiny, shown):
     assert [each["name"] for each in again["methods"]] == ["botelho", "sun", "sse"]
     check = [tiny.program, "check-board", str(tiny.folder / "joined/tiny.board.json"), "--suite", str(tiny.file)]
     done = subprocess.run(check, capture_output=True, text=True, timeout=PATIENCE)
-    assert done.returncode == 0 and "can stand on the board" in done.stdout, done
+    # It claims nothing that a file cannot show: no place among others.
+    assert done.returncode == 0 and "A maintainer's rerun on a fresh seed decides" in done.stdout.replace("\n", " "), done
+    assert not any(words in done.stdout for words in ("can stand", "number 1", "botelho", "Best at")), done
+    tiny.run("fresh", "--methods", "sse", "--seed", 6, "--quiet")
+    done = subprocess.run([*check, "--rerun", str(tiny.folder / "fresh/tiny.board.json")], capture_output=True, text=True,
+                          timeout=PATIENCE)
+    assert done.returncode == 0 and "No rate differs beyond chance" in done.stdout, done
+    done = subprocess.run([*check, "--rerun", check[2]], capture_output=True, text=True, timeout=PATIENCE)
+    assert done.returncode == 2 and "under seed 5, that of the suite; allowed: a run under another seed" in done.stderr, done
     done = subprocess.run([*check[:2], str(board), *check[3:]], capture_output=True, text=True, timeout=PATIENCE)
     assert done.returncode == 1 and "sun: the finished board has a method of this name" in done.stdout, done
     # Cells and loops that are not those of the finished board are named.
