@@ -14,12 +14,11 @@ import re
 import subprocess
 import sys
 
-# Where each method is from, for README.md.
+# Where each method is from, for README.md; of what is made from an abstract the title of the method says it.
 ORIGINS = {"mpmbench": "ours", "likelihood": "ours", "order": "ours", "counterfactual": "ours", "excitation": "ours",
            "variance-ratio": "the baseline", "sse": "simulation error", "botelho": "the thesis",
-           "arx-oe": "Lu et al. (2020)", "lasso": "group lasso", "local": "local approach", "pmr": "plant-model ratio",
-           "badwe2009": "Badwe et al.", "badwe2010": "Badwe et al.", "yu-qin": "Yu and Qin", "sun": "Sun et al.",
-           "mqi-channels": "model quality"}
+           "badwe2009": "Badwe et al. (2009)", "badwe2010": "Badwe et al. (2010)", "yu-qin": "Yu and Qin (2008)",
+           "sun": "Sun et al. (2013)"}
 REFERENCE = "ceiling"
 LEARNED = "docs/learned.json"
 
@@ -54,6 +53,11 @@ def percents(rate):
     return "{} ({} to {})".format(*(round(100 * rate[key]) for key in SHARE)) if counted(rate) else None
 
 
+def marked(text, scores):
+    """With the mark of a method that gives verdicts on a part of the loops."""
+    return f"{text} ~" if text and scores["answers_in_part"] else text
+
+
 def table(heads, rows):
     lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
@@ -72,7 +76,7 @@ def columns(board, wanted, silent):
 
             def cell(method, rate=rate, family=family):
                 entry = method["all"] if family == "all" else method["families"][family]
-                return percents(numbers(entry).get(rate)) or silent.get(rate, "-")
+                return marked(percents(numbers(entry).get(rate)), entry) or silent.get(rate, "-")
             found.append((head, cell))
     return [head for head, _ in found], [cell for _, cell in found]
 
@@ -94,6 +98,18 @@ def ranking(board):
          *(cell(methods[entry["method"]]) for cell in cells)] for entry in board["ranking"]])
 
 
+def questions(board):
+    """A column a question, with ranks among the methods that answer it."""
+    def cell(method, rate):
+        place = board["questions"][rate].get(method["name"])
+        return (marked(percents(method["all"]["rates"][rate]), method["all"]) or "-") + (f" #{place}" if place else "")
+
+    methods = {method["name"]: method for method in board["methods"]}
+    return table(["method", *(board["headings"][rate] for rate in board["questions"])], [
+        [f"`{entry['method']}`", *(cell(methods[entry["method"]], rate) for rate in board["questions"])]
+        for entry in board["ranking"]])
+
+
 def detection(board):
     """What methods flag, and what of it is right at their own thresholds."""
     heads, cells = columns(board, [
@@ -107,7 +123,7 @@ def detection(board):
         for method in board["methods"]])
 
 
-def readme(board):
+def readme(board, titles):
     """The methods that name sources, best first, and then the others."""
     methods = {method["name"]: method for method in board["methods"]}
     heads, cells = columns(board, [
@@ -115,7 +131,7 @@ def readme(board):
         ("source_05_impact", ["all"]), ("repair_gain_share_05", ["all"])],
         {"source_05_impact": "names none", "repair_gain_share_05": "names none"})
     return table(["method", *(head.removesuffix(": all") for head in heads)], [
-        [f"`{entry['method']}`, {ORIGINS[entry['method']]}", *(cell(methods[entry["method"]]) for cell in cells)]
+        [f"`{entry['method']}`, {ORIGINS.get(entry['method']) or titles[entry['method']]}", *(cell(methods[entry["method"]]) for cell in cells)]
         for entry in board["ranking"]])
 
 
@@ -154,7 +170,8 @@ def exact(board):
         rates = method["all"]["rates"]
         return [f"`{method['name']}`" + (" ~" if method["all"]["answers_in_part"] else ""),
                 *(passed(method["families"][name]) for name in families),
-                percents(rates["false_alarm_healthy"]), percents(rates["power_05_impact"])]
+                marked(percents(rates["false_alarm_healthy"]), method["all"]),
+                marked(percents(rates["power_05_impact"]), method["all"])]
 
     return table(["method", *(f"`{name}`" for name in families), "healthy, flagged", "with an impact, at 5 %"],
                  [row(method) for method in board["methods"]])
@@ -167,9 +184,12 @@ def finished(program, suite):
 
 def pages(program, sources):
     """The pages as they should be, by path."""
+    listed = json.loads(subprocess.check_output([program, "methods", "--json"], text=True))["methods"]
+    titles = {method["name"]: method["title"] for method in listed}
     standard, cells = finished(program, "standard"), json.loads((sources / LEARNED).read_text())
-    tables = {"README.md": {"standard": readme(standard)},
-              "docs/suite.md": {"detection": detection(standard), "ranking": ranking(standard), "curve": curve(standard, cells),
+    tables = {"README.md": {"standard": readme(standard, titles)},
+              "docs/suite.md": {"detection": detection(standard), "ranking": ranking(standard), "questions": questions(standard),
+                                "curve": curve(standard, cells),
                                 "learned": learned(cells)},
               "docs/suite_exact.md": {"exact": exact(finished(program, "exact"))}}
     return {sources / name: with_tables((sources / name).read_text(encoding="utf-8"), of_page)

@@ -349,7 +349,7 @@ class Autocovariance final : public AssessmentMethod {
 
 AssessmentMethodInfo autocovariance_method() {
   return {{.name = "autocovariance",
-           .title = "Wang et al. (2018), reconstruction",
+           .title = "after Wang et al. (2018), reconstructed",
            .verdict = "the autocovariances of some CV are not those of the controller on its own model",
            .requirements = {.benchmark = true, .moving_mvs = true, .nominal_loop = true},
            .locates_cvs = true,

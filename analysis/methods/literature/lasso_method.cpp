@@ -261,7 +261,7 @@ class Lasso final : public AssessmentMethod {
 AssessmentMethodInfo lasso_method() {
   return {
       {.name = "lasso",
-       .title = "Kono and Koizumi (2023), reconstruction",
+       .title = "after Kono and Koizumi (2023), reconstructed",
        .verdict = "channels of the model are wrong: the group lasso of the simulation errors on the inputs "
                   "selects them",
        .requirements = {.moving_mvs = true},

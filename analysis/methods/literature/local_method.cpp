@@ -151,7 +151,7 @@ class Local final : public AssessmentMethod {
 AssessmentMethodInfo local_method() {
   return {
       {.name = "local",
-       .title = "Jiang et al. (2009), reconstruction",
+       .title = "after Jiang et al. (2009), reconstructed",
        .verdict = "the gradient of the prediction error by the parameters of the model has a mean",
        .requirements = {.moving_mvs = true},
        .locates_cvs = true,

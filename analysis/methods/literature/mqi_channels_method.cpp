@@ -94,7 +94,7 @@ class MqiChannels final : public AssessmentMethod {
 
 AssessmentMethodInfo mqi_channels_method() {
   return {{.name = "mqi-channels",
-           .title = "Li et al. (2017), reconstruction",
+           .title = "after Li et al. (2017), reconstructed",
            .verdict = "some submodel is worse than none: the model quality index rises above the tolerance "
                       "when it is left out",
            .requirements = {.moving_mvs = true},

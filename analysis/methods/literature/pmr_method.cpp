@@ -174,7 +174,7 @@ class PlantModelRatio final : public AssessmentMethod {
 AssessmentMethodInfo pmr_method() {
   return {
       {.name = "pmr",
-       .title = "Selvanathan and Tangirala (2010), reconstruction",
+       .title = "after Selvanathan and Tangirala (2010), reconstructed",
        .verdict = "the plant-model ratio of some CV, from what signals from outside do to the loop, is not 1",
        .requirements = {.moving_mvs = true},
        .locates_cvs = true,
