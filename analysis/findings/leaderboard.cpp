@@ -13,6 +13,9 @@
 namespace mpm {
 namespace {
 
+/// Of either source: of fewer loops it is chance that it was never named.
+constexpr std::int64_t kFewestOfSource = 10;
+
 /// Of a rate that was counted on some loop.
 bool at_least(const Rate& rate, double least) {
   return rate.total > 0 && rate.value >= least;
@@ -163,6 +166,27 @@ bool Leaderboard::is_own(std::size_t method) const {
   return std::find(own.begin(), own.end(), methods[method]) != own.end();
 }
 
+bool answers(const Leaderboard& board, std::size_t method, std::string_view rate) {
+  const PooledScores& scores = board.overall[method];
+  if (board.methods[method] == kReferenceMethod || scores.rates[rate].total == 0)
+    return false;
+  const Rate &mismatches = scores["source_05_mpm"], &disturbances = scores["source_05_ud"];
+  const bool one_of_them = std::min(mismatches.total, disturbances.total) >= kFewestOfSource &&
+                           (mismatches.hits == 0) != (disturbances.hits == 0);
+  return rate != kRankingSource || !one_of_them;
+}
+
+std::optional<int> question_rank(const Leaderboard& board, std::size_t method, std::string_view rate) {
+  if (!answers(board, method, rate))
+    return std::nullopt;
+  int place = 1;
+  for (std::size_t other = 0; other < board.methods.size(); ++other)
+    if (answers(board, other, rate) &&
+        board.overall[other].rates[rate].value > board.overall[method].rates[rate].value)
+      ++place;
+  return place;
+}
+
 std::vector<RankedMethod> ranking(const Leaderboard& board) {
   std::vector<RankedMethod> ranked;
   if (!board.in_worlds())
@@ -170,10 +194,6 @@ std::vector<RankedMethod> ranking(const Leaderboard& board) {
   for (std::size_t method = 0; method < board.methods.size(); ++method)
     if (board.methods[method] != kReferenceMethod)
       ranked.push_back({method});
-  const auto source = [&board](const RankedMethod& each) {
-    const Rate& rate = board.overall[each.method][kRankingSource];
-    return rate.total > 0 ? rate.value : kNaN;
-  };
   const auto repair = [&board](const RankedMethod& each) {
     return board.overall[each.method].estimates[kRankingRepair].value;
   };
@@ -185,7 +205,7 @@ std::vector<RankedMethod> ranking(const Leaderboard& board) {
            }));
   };
   for (RankedMethod& each : ranked) {
-    each.source = rank(each, source);
+    each.source = question_rank(board, each.method, kRankingSource);
     each.repair = rank(each, repair);
   }
   const auto last = [](const std::optional<int>& place) {

@@ -134,10 +134,18 @@ struct Leaderboard {
   bool is_own(std::size_t method) const;
 };
 
+/// Does the method answer the question whose answers this rate counts? Not without a loop that counts, and of
+/// kRankingSource not where it names mismatches alone, or disturbances alone: in no loop of one of them, but
+/// in some of the other.
+bool answers(const Leaderboard& board, std::size_t method, std::string_view rate);
+
+/// 1: the best of those that answer the question; none: it does not.
+std::optional<int> question_rank(const Leaderboard& board, std::size_t method, std::string_view rate);
+
 /// A method among the others, over all families of a suite of worlds.
 struct RankedMethod {
   std::size_t method;              ///< place in Leaderboard::methods
-  std::optional<int> source = {};  ///< 1: the best; none: it tells no sources, or there is no threshold
+  std::optional<int> source = {};  ///< question_rank() of kRankingSource
   std::optional<int> repair = {};  ///< the same; none: it names no channels
 };
 

@@ -36,6 +36,7 @@ std::vector<OutcomeFact> outcome_facts() {
       yes_or_no<&LoopOutcome::names_source>(), verdict<&LoopOutcome::channel>(),
       verdict<&LoopOutcome::parameter>(),      verdict<&LoopOutcome::size>(),
       verdict<&LoopOutcome::candidate>(),      verdict<&LoopOutcome::window>(),
+      verdict<&LoopOutcome::mismatch>(),
   };
 }
 
@@ -69,8 +70,9 @@ bool is_possible(const LoopOutcome& said, const FaultTruth& truth, const Outcome
                                         !judged(said.candidate) && !judged(said.window));
   const bool right = said.flagged || (!judged_rightly(said.channel) && !judged_rightly(said.parameter) &&
                                       !judged(said.candidate));
-  return above && named && asked && right && judged(said.size) <= judged_rightly(said.parameter) &&
-         judged(said.window) <= truth.impact;
+  const bool of_model = (truth.has_mismatch() || truth.kind == ExperimentKind::ud) && scope.tells_sources;
+  return above && named && judged(said.mismatch) <= of_model && asked && right &&
+         judged(said.size) <= judged_rightly(said.parameter) && judged(said.window) <= truth.impact;
 }
 
 }  // namespace mpm

@@ -19,6 +19,7 @@ struct FaultTruth {
   bool one_cv = false;  ///< its fault affects one CV
 
   bool faulty() const { return !is_faultless(kind); }
+  bool has_mismatch() const { return kind == ExperimentKind::mpm || kind == ExperimentKind::mpm_ud; }
   bool operator==(const FaultTruth&) const = default;
 };
 
@@ -39,6 +40,9 @@ struct LoopOutcome {
   Correctness size = {};
   Correctness candidate = {};
   Correctness window = {};  ///< a window that ends after the onset of a fault with an impact is flagged
+  /// The source that it would name if it flagged the loop has a mismatch where the fault has one, and has
+  /// none where the fault is a disturbance alone.
+  Correctness mismatch = {};
 
   bool operator==(const LoopOutcome&) const = default;
 };

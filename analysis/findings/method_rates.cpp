@@ -79,6 +79,11 @@ LoopOutcome SeenLoop::outcome() const {
       .parameter = judgement.parameter,
       .size = judgement.size,
       .candidate = judgement.candidate};
+  if (method.tells_sources && (truth.has_mismatch() || truth.kind == ExperimentKind::ud)) {
+    const FaultSource named = said.predicted_source;
+    const bool says_so = named == FaultSource::mpm || named == FaultSource::mpm_ud;
+    outcome.mismatch = says_so == truth.has_mismatch() ? Correctness::right : Correctness::wrong;
+  }
   if (!std::isnan(delay()))
     outcome.window = std::isfinite(delay()) ? Correctness::right : Correctness::wrong;
   return outcome;

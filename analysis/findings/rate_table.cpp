@@ -14,7 +14,12 @@ constexpr bool is_right(Correctness verdict) {
   return verdict == Correctness::right;
 }
 
-constexpr std::array<RateRow, 24> kRates{{
+/// One of the loops of the questions at equal false alarms.
+constexpr bool is_asked(const JudgedLoop& l) {
+  return l.scope.in_worlds && l.scope.at_05 && l.truth.impact;
+}
+
+constexpr std::array<RateRow, 30> kRates{{
     {{"answered", "Verdict given", "share of all loops on which the method gave a verdict"},
      [](const JudgedLoop&) { return true; },
      [](const JudgedLoop& l) { return l.said.answered; }},
@@ -128,6 +133,44 @@ constexpr std::array<RateRow, 24> kRates{{
        return l.scope.in_worlds && l.scope.at_05 && l.scope.tells_sources && l.truth.impact;
      },
      [](const JudgedLoop& l) { return l.said.above_05 && l.said.right_source; }},
+    {{"mismatch_05_impact", "Mismatch or not at 5 %",
+      "share of the loops with a mismatch, a disturbance or both that has an impact in which the method is "
+      "right about whether there is a mismatch: it says so above the threshold calibrated for 5 % false "
+      "alarms, or it does not",
+      false, StudyFeature::calibrated_worlds},
+     [](const JudgedLoop& l) { return is_asked(l) && is_judged(l.said.mismatch); },
+     [](const JudgedLoop& l) {
+       const bool says_so = l.said.above_05 && is_right(l.said.mismatch) == l.truth.has_mismatch();
+       return says_so == l.truth.has_mismatch();
+     }},
+    {{"source_05_mpm", "Mismatch named at 5 %",
+      "share of all loops with a mismatch alone that has an impact, with or without verdict, above the "
+      "threshold calibrated for 5 % false alarms and with the right source",
+      false, StudyFeature::calibrated_worlds},
+     [](const JudgedLoop& l) { return is_asked(l) && l.scope.tells_sources && l.truth.kind == Kind::mpm; },
+     [](const JudgedLoop& l) { return l.said.above_05 && l.said.right_source; }},
+    {{"source_05_ud", "Disturbance named at 5 %",
+      "share of all loops with a disturbance alone that has an impact, with or without verdict, above the "
+      "threshold calibrated for 5 % false alarms and with the right source",
+      false, StudyFeature::calibrated_worlds},
+     [](const JudgedLoop& l) { return is_asked(l) && l.scope.tells_sources && l.truth.kind == Kind::ud; },
+     [](const JudgedLoop& l) { return l.said.above_05 && l.said.right_source; }},
+    {{"channel_05_impact", "Channel at 5 %",
+      "share of the loops with one mismatch of an MV that has an impact that are flagged, above the "
+      "threshold "
+      "calibrated for 5 % false alarms, and whose channel is named",
+      false, StudyFeature::calibrated_worlds},
+     [](const JudgedLoop& l) { return is_asked(l) && is_judged(l.said.channel); },
+     [](const JudgedLoop& l) { return l.said.above_05 && is_right(l.said.channel); }},
+    {{"parameter_05_impact", "Parameter at 5 %",
+      "the same, of which the method is surest of the right channel and parameter", false,
+      StudyFeature::calibrated_worlds},
+     [](const JudgedLoop& l) { return is_asked(l) && is_judged(l.said.parameter); },
+     [](const JudgedLoop& l) { return l.said.above_05 && is_right(l.said.parameter); }},
+    {{"size_05_impact", "Size at 5 %", "the same, whose interval of the size holds the true size", false,
+      StudyFeature::calibrated_worlds},
+     [](const JudgedLoop& l) { return is_asked(l) && is_judged(l.said.parameter); },
+     [](const JudgedLoop& l) { return l.said.above_05 && is_right(l.said.size); }},
     {{"monitored_impact", "Impact flagged in a window",
       "share of the loops with a fault that has an impact in which a window that ends after the onset is "
       "flagged",

@@ -83,11 +83,12 @@ std::vector<std::size_t> board_order(const Leaderboard& board) {
 
 std::string leaderboard_csv(const Leaderboard& board) {
   const std::vector<BoardColumn> columns = board_columns(board);
-  std::string text = "method,own";
+  std::string text = "method,own,answers_in_part";
   for (const BoardColumn& column : columns)
     text += fmt::format(",{0},{0}_lower,{0}_upper,{0}_loops", column.name);
   for (const std::size_t method : board_order(board)) {
-    text += fmt::format("\n{},{}", csv_field(board.methods[method]), board.is_own(method) ? 1 : 0);
+    text += fmt::format("\n{},{},{}", csv_field(board.methods[method]), board.is_own(method) ? 1 : 0,
+                        board.overall[method].answers_in_part() ? 1 : 0);
     for (const BoardColumn& column : columns) {
       const Number number = board_number(board, method, column);
       text += fmt::format(",{},{},{},{}", csv_number(number.value), csv_number(number.interval.lower),

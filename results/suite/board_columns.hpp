@@ -31,8 +31,8 @@ Number board_number(const Leaderboard& board, std::size_t method, const BoardCol
 /// first column.
 std::vector<std::size_t> board_order(const Leaderboard& board);
 
-/// A line a method: "method", "own", and of each column NAME, NAME_lower, NAME_upper and NAME_loops, as
-/// shares.
+/// A line a method: "method", "own", "answers_in_part", and of each column NAME, NAME_lower, NAME_upper and
+/// NAME_loops, as shares.
 std::string leaderboard_csv(const Leaderboard& board);
 
 /// A `tabular` with the rules of booktabs, in percent, own methods in bold.

@@ -13,8 +13,13 @@
 namespace mpm {
 namespace {
 
-Cell percent_cell(const Rate& rate) {
-  return rate.total == 0 ? Number{} : number(rate, NumberForm::whole_percent);
+Cell percent_cell(const PooledScores& scores, const RateRow& row) {
+  const Rate& rate = scores.rates.of(row);
+  if (rate.total == 0)
+    return Number{};
+  Cell cell = number(rate, NumberForm::whole_percent);
+  cell.mark = part_mark(scores);
+  return cell;
 }
 
 /// "-1 to 46"
@@ -75,8 +80,8 @@ Section information_section(const Leaderboard& board) {
     for (const std::string_view name : information_rates()) {
       const RateRow& row = row_of(rate_rows(), name);
       const BoardDuel duel = board_duel(board, row, pair.with, pair.without);
-      cells.push_back(percent_cell(board.overall[pair.without].rates.of(row)));
-      cells.push_back(percent_cell(board.overall[pair.with].rates.of(row)));
+      cells.push_back(percent_cell(board.overall[pair.without], row));
+      cells.push_back(percent_cell(board.overall[pair.with], row));
       cells.push_back(duel.loops == 0 ? Number{}
                                       : Number{duel.difference.value, NumberForm::whole_percent,
                                                duel.difference.interval});

@@ -25,8 +25,7 @@ Cell score_cell(const PooledScores& scores, const RateRow& row) {
   if (rate.total == 0)
     return Number{};
   Cell cell = number(rate, NumberForm::whole_percent);
-  cell.mark =
-      fmt::format("{}{}", scores.too_many_false_alarms() ? "*" : "", scores.answers_in_part() ? "~" : "");
+  cell.mark = fmt::format("{}{}", scores.too_many_false_alarms() ? "*" : "", part_mark(scores));
   cell.hover = fmt::format("{} of {} loops", rate.hits, rate.total);
   cell.ground = rate.value;
   cell.low_is_good = row.low_is_good;
@@ -125,12 +124,14 @@ Section passed_section(const Leaderboard& board) {
   return section;
 }
 
-Cell estimate_cell(const Estimate& estimate) {
+Cell estimate_cell(const PooledScores& scores, std::string_view name) {
+  const Estimate& estimate = scores.estimates[name];
   if (estimate.count == 0)
     return Number{};
   Cell cell = Number{estimate.value, NumberForm::whole_percent, estimate.interval};
   cell.hover = fmt::format("{} loops", estimate.count);
   cell.ground = estimate.value;
+  cell.mark = part_mark(scores);
   return cell;
 }
 
@@ -144,7 +145,7 @@ Section ranking_section(const Leaderboard& board) {
     section.add(axis_table(
         board, fmt::format("{}, mean in % with {:g} % interval", heading_of(name), 100 * board.confidence),
         board.families, board.by_family,
-        [name](const PooledScores& scores) { return estimate_cell(scores.estimates[name]); }));
+        [name](const PooledScores& scores) { return estimate_cell(scores, name); }));
   return section;
 }
 
@@ -267,6 +268,10 @@ Section cells_section(const Leaderboard& board) {
 
 }  // namespace
 
+const char* part_mark(const PooledScores& scores) {
+  return scores.answers_in_part() ? "~" : "";
+}
+
 std::string label_of(const std::string& method) {
   return method == kReferenceMethod ? "reference" : method;
 }
@@ -292,8 +297,8 @@ Document leaderboard_document(const Leaderboard& board) {
   Section by_plant =
       scores_section(board, "by-plant", "By plant, pooled over the families", board.plants, board.by_plant);
   by_plant.shown = Shown::page;
-  for (Section section : {standing_section(board), information_section(board), std::move(figure),
-                          ranking_section(board), passed_section(board),
+  for (Section section : {standing_section(board), questions_section(board), information_section(board),
+                          std::move(figure), ranking_section(board), passed_section(board),
                           scores_section(board, "by-family", "By family, pooled over the plants",
                                          board.families, board.by_family),
                           std::move(by_plant), delays_section(board), reference_section(board),

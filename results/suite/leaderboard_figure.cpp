@@ -21,7 +21,7 @@ Panel column_panel(const Leaderboard& board, const std::vector<std::size_t>& ord
   const auto rows = static_cast<double>(order.size());
   Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
   for (const std::size_t method : order)
-    y.words.push_back(board.methods[method]);
+    y.words.push_back(board.methods[method] + part_mark(board.overall[method]));
   std::reverse(y.words.begin(), y.words.end());  // the first one on top
   const MethodNumber number_text = method_number(column.name);
   PanelScript panel(number_text.name, number_text.heading,

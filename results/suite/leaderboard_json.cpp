@@ -103,6 +103,16 @@ SuiteJson standing_json(const Leaderboard& board) {
   return json;
 }
 
+/// The ranks of questions_section(), by rate and method.
+SuiteJson questions_json(const Leaderboard& board) {
+  SuiteJson json = SuiteJson::object();
+  for (const std::string_view rate : question_rates())
+    for (std::size_t method = 0; method < board.methods.size(); ++method)
+      if (const std::optional<int> rank = question_rank(board, method, rate))
+        json[std::string(rate)][board.methods[method]] = *rank;
+  return json;
+}
+
 /// The numbers of information_section().
 SuiteJson information_json(const Leaderboard& board) {
   SuiteJson json = SuiteJson::array();
@@ -181,8 +191,10 @@ std::string leaderboard_json(const Leaderboard& board) {
                  {"passed_by_nobody", nobody},
                  {"cells", cells_json(board)},
                  {"methods", methods}};
-  if (board.in_worlds())
+  if (board.in_worlds()) {
     json["ranking"] = ranking_json(board);
+    json["questions"] = questions_json(board);
+  }
   if (!information_pairs(board).empty())
     json["information"] = information_json(board);
   if (!board.finished_by.empty())

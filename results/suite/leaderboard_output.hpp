@@ -37,6 +37,16 @@ std::string standing_sentence(const Leaderboard& board, std::size_t method,
 /// Who is best at what, where one's own methods stand, and the table of board_columns.hpp.
 Section standing_section(const Leaderboard& board);
 
+/// The questions that a method may answer, a rate each: those at the threshold for 5 % false alarms.
+std::vector<std::string_view> question_rates();
+
+/// A column a question, over the loops that ask it, with ranks among the methods that answer it; no content
+/// outside of worlds.
+Section questions_section(const Leaderboard& board);
+
+/// "~" for a method that gives verdicts on a part of the loops; otherwise empty. It stands at each number.
+const char* part_mark(const PooledScores& scores);
+
 /// The rates that the correction by the benchmark may change.
 std::vector<std::string_view> information_rates();
 

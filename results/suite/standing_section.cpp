@@ -123,8 +123,8 @@ Section standing_section(const Leaderboard& board) {
       cell.hover = number.of >= 0 ? fmt::format("{} loops", number.of) : "";
       cell.ground = number.value;
       cell.low_is_good = method_number(column.name).low_is_good;
-      if (board.overall[method].answers_in_part() && !std::isnan(number.value))
-        cell.mark = "~";
+      if (!std::isnan(number.value))
+        cell.mark = part_mark(board.overall[method]);
       std::get<Number>(cell.content).of = -1;
       cells.push_back(std::move(cell));
     }

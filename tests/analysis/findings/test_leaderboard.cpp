@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -162,6 +163,38 @@ TEST_CASE("a suite of worlds ranks its methods by source and by the gain of repa
   CHECK((ranked[3].method == 1 && !ranked[3].source && !ranked[3].repair));
   cells[1].in_worlds = false;
   CHECK(ranking(make_leaderboard(two_families(), {"a", "silent", "best", "channels"}, "1.0", cells)).empty());
+}
+
+TEST_CASE("a method that names mismatches alone has no rank among those that tell sources", "[leaderboard]") {
+  const auto scores = [](std::int64_t of_mpm, std::int64_t of_ud, std::int64_t of) {
+    return scores_with({{"source_05_mpm", {of_mpm, of}},
+                        {"source_05_ud", {of_ud, of}},
+                        {"source_05_impact", {of_mpm + of_ud, 2 * of}},
+                        {"answered", {2 * of, 2 * of}}});
+  };
+  const auto board_of = [&](std::int64_t of) {
+    return make_leaderboard(
+        two_families(), {"both", "mismatches", "poor", "ceiling"}, "1.0",
+        {{.plant = 0,
+          .family = 0,
+          .in_worlds = true,
+          .methods = {scores(9, 9, of), scores(10, 0, of), scores(1, 1, of), scores(10, 10, of)}}});
+  };
+  const Leaderboard board = board_of(10);
+  CHECK(question_rank(board, 0, kRankingSource) == 1);
+  CHECK_FALSE(question_rank(board, 1, kRankingSource));
+  CHECK(question_rank(board, 2, kRankingSource) == 2);  // not behind the one that does not answer
+  CHECK(question_rank(board, 1, "source_05_mpm") == 1);
+  CHECK(question_rank(board, 0, "source_05_mpm") == 2);
+  CHECK_FALSE(question_rank(board, 0, "channel_05_impact"));
+  CHECK_FALSE(question_rank(board, 3, kRankingSource));  // the reference
+  const std::vector<RankedMethod> ranked = ranking(board);
+  CHECK((ranked[0].method == 0 && ranked[1].method == 2 && ranked[2].method == 1));
+  // Of a few loops it may be chance that it never said so.
+  Leaderboard few = board_of(10);
+  for (PooledScores& each : few.overall)
+    each.rates["source_05_ud"] = rate(each["source_05_ud"].hits == 0 ? 0 : 1, 3);
+  CHECK(question_rank(few, 1, kRankingSource) == 2);
 }
 
 TEST_CASE("a task is passed at its limits, and not below one of them", "[leaderboard]") {

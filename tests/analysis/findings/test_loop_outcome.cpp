@@ -23,11 +23,11 @@ TEST_CASE("every fact of an outcome is put back as it was taken out, and is one 
   }
   // A member that is in no fact is missing here.
   const auto& [answered, flagged, above_05, above_chosen, right_cv, right_source, above_01, above_not_mpm,
-               names_source, channel, parameter, size, candidate, window] = all;
+               names_source, channel, parameter, size, candidate, window, mismatch] = all;
   for (const bool member : {answered, flagged, above_05, above_chosen, right_cv, right_source, above_01,
                             above_not_mpm, names_source})
     CHECK(member);
-  for (const Correctness member : {channel, parameter, size, candidate, window})
+  for (const Correctness member : {channel, parameter, size, candidate, window, mismatch})
     CHECK(member == Correctness::wrong);
 }
 
@@ -51,6 +51,10 @@ TEST_CASE("a method says nothing that it cannot, and nothing right of what is no
   CHECK_FALSE(possible({.answered = true, .flagged = true, .size = Correctness::wrong}, fault));
   CHECK_FALSE(possible({.answered = true, .channel = Correctness::right}, fault));
   CHECK_FALSE(possible({.answered = true, .channel = Correctness::wrong}, healthy));
+  CHECK(possible({.answered = true, .mismatch = Correctness::right}, fault));
+  CHECK_FALSE(possible({.answered = true, .mismatch = Correctness::right}, healthy));
+  CHECK_FALSE(
+      possible({.answered = true, .mismatch = Correctness::wrong}, {ExperimentKind::other, true, false}));
   CHECK_FALSE(possible({.answered = true, .window = Correctness::right}, healthy));
 }
 

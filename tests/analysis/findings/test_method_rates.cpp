@@ -520,10 +520,50 @@ TEST_CASE(
   CHECK(rates.estimates["repair_gain_share_05"].value == Approx(2.25 / 7.0));
   // Above the threshold with `mismatch`: all but the fourth, the one without a verdict, and the disturbance.
   check_rate(rates["source_05_impact"], 6, 9);
+  check_rate(rates["source_05_mpm"], 6, 8);
+  check_rate(rates["source_05_ud"], 0, 1);
+  check_rate(rates["mismatch_05_impact"], 6, 8);  // of those with a verdict; the disturbance is called one
   const std::vector<Finding> rows = rows_of(worlds, rates, form->method());
   CHECK(std::any_of(rows.begin(), rows.end(), [](const Finding& row) {
     return row.name == "compare.lasso.repair_gain_share_05" && row.value > 0.3 && row.interval.upper < 1.0;
   }));
+}
+
+TEST_CASE("a question at equal false alarms is asked of the loops that it is about, and of no others",
+          "[method_rates]") {
+  const OutcomeScope scope{.tells_sources = true, .at_05 = true, .in_worlds = true};
+  const auto ask = [](const char* name, const OutcomeScope& of, const FaultTruth& truth,
+                      const LoopOutcome& said) {
+    return row_of(rate_rows(), name).ask({of, truth, said});
+  };
+  const FaultTruth mismatch{kMpm, true, true}, disturbance{kUd, true, true};
+  const std::optional<bool> none;
+  for (const bool above : {false, true})
+    for (const Correctness told : {Correctness::wrong, Correctness::right}) {
+      const bool right = told == Correctness::right;
+      const LoopOutcome said{.answered = true,
+                             .flagged = true,
+                             .above_05 = above,
+                             .right_source = right,
+                             .channel = told,
+                             .parameter = told,
+                             .size = told,
+                             .mismatch = told};
+      CHECK(ask("mismatch_05_impact", scope, mismatch, said) == (above && right));
+      CHECK(ask("mismatch_05_impact", scope, disturbance, said) == (!above || right));  // silence is right
+      CHECK(ask("source_05_mpm", scope, mismatch, said) == (above && right));
+      CHECK(ask("source_05_ud", scope, disturbance, said) == (above && right));
+      CHECK(ask("source_05_mpm", scope, disturbance, said) == none);
+      CHECK(ask("source_05_ud", scope, mismatch, said) == none);
+      for (const char* const name : {"channel_05_impact", "parameter_05_impact", "size_05_impact"}) {
+        INFO(name);
+        CHECK(ask(name, scope, mismatch, said) == (above && right));
+        CHECK(ask(name, scope, mismatch, {.answered = true, .above_05 = true}) == none);   // it names none
+        CHECK(ask(name, scope, {kMpm, false, true}, said) == none);                        // without impact
+        CHECK(ask(name, {.tells_sources = true, .at_05 = true}, mismatch, said) == none);  // no worlds
+        CHECK(ask(name, {.tells_sources = true, .in_worlds = true}, mismatch, said) == none);
+      }
+    }
 }
 
 TEST_CASE("no two numbers of a method have the same name or heading", "[method_rates]") {
