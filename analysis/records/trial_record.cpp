@@ -64,9 +64,10 @@ PlantRecord trial_record(const TrialFrame& frame, const ExperimentDraw& draw, co
   const PlantRecord& like = frame.record;
   const Eigen::Index N = like.samples();
   PlantRecord record = like;
-  record.y = recorded(frame.study, draw.index, loop).y.rightCols(N);
-  record.u = loop.u.rightCols(N);
-  record.d = loop.d.rightCols(N);
+  const Trajectory kept = recorded(frame.study, draw.index, loop);
+  record.y = kept.y.rightCols(N);
+  record.u = kept.u.rightCols(N);
+  record.d = kept.d.rightCols(N);
   record.u_target = loop.u_target.rightCols(N);
   record.y_sim.setConstant(kNaN);
   if (record.candidates.size() > 0)

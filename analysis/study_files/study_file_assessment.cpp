@@ -31,8 +31,9 @@ OptionKeys assessment_keys(AssessmentOptions& options) {
           "what methods assume of the plant without a fault. `\"nominal\"`: it is exactly the model. "
           "`\"benchmark\"`: it differs from the model as the benchmark shows, and methods look for "
           "what is new since then. `\"automatic\"`: `\"benchmark\"` if the study has `[world]`, if the "
-          "plant is a program or an FMU, or if it is nonlinear and its benchmark rejects an exact "
-          "model; otherwise `\"nominal\"`. `validate` and `run` say which it is"),
+          "plant is a program or an FMU, or if the plant is nonlinear, or the record has averages or "
+          "shifts, and the benchmark rejects an exact model; otherwise `\"nominal\"`. `validate` and `run` "
+          "say which it is"),
       key::number("model_error", options.model_error, NumberRule::positive(),
                   "prior standard deviation of the gain and time constant of each channel, relative; of its "
                   "dead time, as a fraction of the dead time or of a sample"),

@@ -64,24 +64,71 @@ void refuse_without_noise(const TomlTable& record, const Study& study) {
                       "simulation.noise_standard_deviation > 0 for every CV");
 }
 
+/// One number for all CVs, or a table of variables, of which each has its own.
+void read_shifts(const TomlTable& record, const std::string& key, Study& study) {
+  RecordOptions& options = study.record;
+  const NumberRule rule{.low = -RecordOptions::kMostLate,
+                        .high = RecordOptions::kMostEarly,
+                        .low_included = true,
+                        .high_included = true};
+  if (!record.require(key, "a number, or a table of variables").is_table()) {
+    options.cv_shift.assign(study.plant.cvs.size(), read_number(record, key, rule));
+    return;
+  }
+  std::vector<std::string> names = variable_names(study.plant.cvs);
+  for (const auto* variables : {&study.plant.mvs, &study.plant.mds})
+    for (const std::string& name : variable_names(*variables))
+      names.push_back(name);
+  const TomlTable table = record.table(key, names);
+  const auto read = [&](const std::vector<PlantModel::Variable>& variables, std::vector<double>& shifts) {
+    for (const std::string& name : variable_names(variables))
+      shifts.push_back(table.has(name) ? read_number(table, name, rule) : 0.0);
+  };
+  read(study.plant.cvs, options.cv_shift);
+  read(study.plant.mvs, options.mv_shift);
+  read(study.plant.mds, options.md_shift);
+}
+
+/// A simulation of somebody else has no values between its samples.
+void refuse_between_samples(const TomlTable& record, const Study& study) {
+  if (study.nonlinear && study.nonlinear->model.foreign && study.record.looks_between_samples())
+    record.refuse(study.record.sampling == OutputSampling::average ? "sampling" : "shift",
+                  "values between the samples of a plant that is a program or an FMU",
+                  "\"snapshot\", and shifts of the CVs by whole samples");
+}
+
 OptionKeys record_keys(Study& study) {
   RecordOptions& options = study.record;
-  return {key::optional_table(
-              "outliers", [&options] { return outliers_keys(options); }, "single samples that are far off"),
-          key::number("quantisation", options.quantisation, NumberRule::at_least(0),
-                      "step between two values", "noise standard deviations")
-              .otherwise("0: none"),
-          key::optional_table(
-              "missing", [&options] { return missing_keys(options); }, "gaps, each CV with its own"),
-          key::number("compression", options.compression, NumberRule::at_least(0),
-                      "tolerance of the swinging-door compression. The reader interpolates between archived "
-                      "points, so no sample is off by more",
-                      "noise standard deviations")
-              .otherwise("0: every sample is kept"),
-          key::optional_table(
-              "candidates", [&options] { return candidates_keys(options); },
-              "further signals that the model does not have: some drive a disturbance, others are decoys"),
-          key::check([&study](const TomlTable& table) { refuse_without_noise(table, study); })};
+  return {
+      key::choice("sampling", options.sampling,
+                  "what a row has of a CV: its measurement at the sample, or its mean over the sample time "
+                  "before it, as averages of a historian are. The controller has measurements in either "
+                  "case"),
+      key::option("shift", "number, or table",
+                  "by how much later than its row the value of a variable is, from 0.5 for half a sample to "
+                  "-1 for one sample earlier; one for all CVs, or `{y1 = -0.5, u1 = 1}` with some CVs, MVs "
+                  "and MDs. MVs and MDs are held over a sample",
+                  "samples")
+          .otherwise("0 for each variable")
+          .allow(fmt::format("-{} to {}", RecordOptions::kMostLate, RecordOptions::kMostEarly))
+          .read([&study](const TomlTable& table, const std::string& key) { read_shifts(table, key, study); }),
+      key::check([&study](const TomlTable& table) { refuse_between_samples(table, study); }),
+      key::optional_table(
+          "outliers", [&options] { return outliers_keys(options); }, "single samples that are far off"),
+      key::number("quantisation", options.quantisation, NumberRule::at_least(0), "step between two values",
+                  "noise standard deviations")
+          .otherwise("0: none"),
+      key::optional_table(
+          "missing", [&options] { return missing_keys(options); }, "gaps, each CV with its own"),
+      key::number("compression", options.compression, NumberRule::at_least(0),
+                  "tolerance of the swinging-door compression. The reader interpolates between archived "
+                  "points, so no sample is off by more",
+                  "noise standard deviations")
+          .otherwise("0: every sample is kept"),
+      key::optional_table(
+          "candidates", [&options] { return candidates_keys(options); },
+          "further signals that the model does not have: some drive a disturbance, others are decoys"),
+      key::check([&study](const TomlTable& table) { refuse_without_noise(table, study); })};
 }
 
 }  // namespace

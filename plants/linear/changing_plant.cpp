@@ -61,11 +61,11 @@ Eigen::VectorXd checked_share(Eigen::VectorXd share) {
 }  // namespace
 
 ChangingPlant::ChangingPlant(const TransferMatrix& before, const TransferMatrix& after, double sample_time,
-                             Eigen::VectorXd share)
+                             Eigen::VectorXd share, OutputSampling sampling)
     : share_(checked_share(std::move(share))),
       channels_(changed_channels<std::vector<Channel>>(before, after)),
-      unchanged_(without(channels_, before), sample_time),
-      changing_(both_of(channels_, before, after), sample_time),
+      unchanged_(without(channels_, before), sample_time, sampling),
+      changing_(both_of(channels_, before, after), sample_time, sampling),
       w_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(channels_.size()))),
       output_(Eigen::VectorXd::Zero(before.rows())) {}
 

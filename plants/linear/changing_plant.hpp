@@ -21,10 +21,11 @@ namespace mpm {
 /// one of the two has no static gain or the gain 0, f = 1.
 class ChangingPlant final : public Plant {
  public:
-  /// `share` is a(k), one number a sample; after the last one it stays. Errors: InputError for matrices of
-  /// different size, no share, a share outside [0, 1], or as LinearPlant.
+  /// `share` is a(k), one number a sample; after the last one it stays. It holds over the sample time before
+  /// sample k, so that means (OutputSampling::average) go over by the same share. Errors: InputError for
+  /// matrices of different size, no share, a share outside [0, 1], or as LinearPlant.
   ChangingPlant(const TransferMatrix& before, const TransferMatrix& after, double sample_time,
-                Eigen::VectorXd share);
+                Eigen::VectorXd share, OutputSampling sampling = OutputSampling::snapshot);
 
   Eigen::Index output_count() const override { return output_.size(); }
   Eigen::Index input_count() const override { return unchanged_.input_count(); }

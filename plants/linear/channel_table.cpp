@@ -47,7 +47,7 @@ Eigen::VectorXd steady_state_per_input(const DiscreteChannel& model) {
   return difference.fullPivLu().solve(model.b_now + model.b_previous);
 }
 
-std::vector<Entry> discretise_channels(const TransferMatrix& G, double sample_time) {
+std::vector<Entry> discretise_channels(const TransferMatrix& G, double sample_time, OutputSampling sampling) {
   std::vector<Entry> entries;
   for (Eigen::Index col = 0; col < G.cols(); ++col) {
     for (Eigen::Index row = 0; row < G.rows(); ++row) {
@@ -55,7 +55,7 @@ std::vector<Entry> discretise_channels(const TransferMatrix& G, double sample_ti
       if (channel.is_zero()) {
         continue;
       }
-      DiscreteChannel model = discretise(channel, sample_time);
+      DiscreteChannel model = discretise(channel, sample_time, sampling);
       const ChannelWiring wiring = make_wiring(row, col, G.cols(), model.delay);
       Eigen::VectorXd steady =
           channel.is_integrating() ? ramp_state_per_input(model) : steady_state_per_input(model);
@@ -145,14 +145,14 @@ void sort_into(ChannelTable& table, const std::vector<Entry>& entries) {
 
 }  // namespace
 
-ChannelTable make_channel_table(const TransferMatrix& G, double sample_time) {
+ChannelTable make_channel_table(const TransferMatrix& G, double sample_time, OutputSampling sampling) {
   require_sample_time(sample_time);
   ChannelTable table;
   table.output_count = G.rows();
   table.input_count = G.cols();
   table.sample_time = sample_time;
 
-  const std::vector<Entry> entries = discretise_channels(G, sample_time);
+  const std::vector<Entry> entries = discretise_channels(G, sample_time, sampling);
   int max_delay = 0;
   for (const Entry& entry : entries) {
     max_delay = std::max(max_delay, entry.model.delay);

@@ -82,6 +82,7 @@ struct ChannelTable {
 };
 
 /// Discretises every non-zero channel. Errors: as discretise().
-ChannelTable make_channel_table(const TransferMatrix& G, double sample_time);
+ChannelTable make_channel_table(const TransferMatrix& G, double sample_time,
+                                OutputSampling sampling = OutputSampling::snapshot);
 
 }  // namespace mpm

@@ -32,8 +32,8 @@ void require_steady_input(const ChannelTable& table, const Eigen::Ref<const Eige
 
 }  // namespace
 
-LinearPlant::LinearPlant(const TransferMatrix& G, double sample_time)
-    : table_(std::make_shared<const ChannelTable>(make_channel_table(G, sample_time))),
+LinearPlant::LinearPlant(const TransferMatrix& G, double sample_time, OutputSampling sampling)
+    : table_(std::make_shared<const ChannelTable>(make_channel_table(G, sample_time, sampling))),
       input_count_(G.cols()),
       state_(Eigen::VectorXd::Zero(table_->state_per_input.size())),
       next_state_(Eigen::VectorXd::Zero(table_->max_order)),
@@ -203,9 +203,9 @@ void LinearPlant::add_up_others() {
 }
 
 Eigen::MatrixXd simulate(const TransferMatrix& G, double sample_time,
-                         const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
+                         const Eigen::Ref<const Eigen::MatrixXd>& inputs, OutputSampling sampling) {
   require_input_size(inputs.rows(), G.cols());
-  LinearPlant plant(G, sample_time);
+  LinearPlant plant(G, sample_time, sampling);
   Eigen::MatrixXd outputs(G.rows(), inputs.cols());
   for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
     outputs.col(k) = plant.output();

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "plants/linear/transfer_matrix.hpp"
+#include "plants/output_sampling.hpp"
 #include "plants/plant.hpp"
 
 namespace mpm {
@@ -25,8 +26,10 @@ struct ChannelTable;
 /// nothing, which makes it cheap to run the free response of a plant from its present state.
 class LinearPlant final : public Plant {
  public:
-  /// A plant at rest. Errors: InputError as discretise().
-  LinearPlant(const TransferMatrix& G, double sample_time);
+  /// A plant at rest. With OutputSampling::average y(k) is the mean over the sample time before sample k.
+  /// Errors: InputError as discretise().
+  LinearPlant(const TransferMatrix& G, double sample_time,
+              OutputSampling sampling = OutputSampling::snapshot);
 
   Eigen::Index output_count() const override { return output_.size(); }
   Eigen::Index input_count() const override { return input_count_; }
@@ -83,7 +86,8 @@ class LinearPlant final : public Plant {
 /// The response of G from rest to `inputs` (n_in x N): outputs (ny x N), of which column k is sampled just
 /// before column k of the inputs acts. Errors: InputError for a wrong number of rows, or as discretise().
 Eigen::MatrixXd simulate(const TransferMatrix& G, double sample_time,
-                         const Eigen::Ref<const Eigen::MatrixXd>& inputs);
+                         const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                         OutputSampling sampling = OutputSampling::snapshot);
 
 /// Unit step responses. Entry j of the result belongs to input j: an ny x `samples` matrix whose column k - 1
 /// is y(k), k = 1 ... samples, after a step of input j from 0 to 1 at k = 0. Errors: InputError for a

@@ -35,8 +35,12 @@ StepCoefficients::StepCoefficients(Eigen::VectorXd values, double interval, bool
 }
 
 double StepCoefficients::operator()(double t) const {
+  return t <= 0.0 ? 0.0 : after_start(t);
+}
+
+double StepCoefficients::after_start(double t) const {
   const double place = snapped((t - start_) / interval_);
-  if (t <= 0.0 || place <= 0.0)
+  if (place <= 0.0)
     return 0.0;
   const Eigen::Index n = values_->size();
   if (place >= static_cast<double>(n))
@@ -57,6 +61,25 @@ Eigen::VectorXd StepCoefficients::sampled(double sample_time) const {
   Eigen::VectorXd values(count);
   for (Eigen::Index k = 0; k < count; ++k)
     values(k) = (*this)(sample_time * static_cast<double>(k + 1));
+  return values;
+}
+
+double StepCoefficients::integral(double from, double to) const {
+  double sum = 0.0;
+  while (from < to) {
+    const double piece = std::floor(snapped((from - start_) / interval_)) + 1.0;
+    const double end = std::min(to, start_ + interval_ * piece);
+    sum += (end - from) * (after_start(from) + after_start(end)) / 2.0;
+    from = std::max(end, std::nextafter(from, to));
+  }
+  return sum;
+}
+
+Eigen::VectorXd StepCoefficients::averaged(double sample_time) const {
+  Eigen::VectorXd values(sampled(sample_time).size() + 1);
+  for (Eigen::Index k = 0; k < values.size(); ++k)
+    values(k) = integral(sample_time * static_cast<double>(k), sample_time * static_cast<double>(k + 1)) /
+                sample_time;
   return values;
 }
 

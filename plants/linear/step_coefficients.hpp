@@ -36,6 +36,9 @@ class StepCoefficients {
   /// S(Ts), S(2 Ts), ..., until the last coefficient is reached; at least two values.
   Eigen::VectorXd sampled(double sample_time) const;
 
+  /// The means of S over [0, Ts), [Ts, 2 Ts), ..., until all of S has its last value or slope.
+  Eigen::VectorXd averaged(double sample_time) const;
+
   /// factor * S(t).
   StepCoefficients with_gain_scaled(double factor) const;
   /// S(about + (t - about) / factor), and of one that ramps `factor` times that: its rate stays.
@@ -46,6 +49,10 @@ class StepCoefficients {
   friend bool operator==(const StepCoefficients& a, const StepCoefficients& b);
 
  private:
+  /// S(t) of t >= 0, at 0 what it is right after it.
+  double after_start(double t) const;
+  double integral(double from, double to) const;
+
   std::shared_ptr<const Eigen::VectorXd> values_;
   double interval_;
   bool ramps_;

@@ -71,6 +71,26 @@ Hold hold(const Realisation& form, double duration) {
   return {exponential.topLeftCorner(n, n), exponential.topRightCorner(n, 1)};
 }
 
+/// The same with the integral q of the output as its last state and its output: q' = C x + D u.
+Realisation with_integral(const Realisation& form) {
+  const Eigen::Index n = form.A.rows();
+  Realisation longer{Eigen::MatrixXd::Zero(n + 1, n + 1), Eigen::VectorXd(n + 1),
+                     Eigen::RowVectorXd::Unit(n + 1, n), 0.0};
+  longer.A.topLeftCorner(n, n) = form.A;
+  longer.A.bottomLeftCorner(1, n) = form.C;
+  longer.B << form.B, form.D;
+  return longer;
+}
+
+/// Of a channel whose last state is the integral of its output: that of one sample, over its length.
+void take_means(DiscreteChannel& channel, double sample_time) {
+  const Eigen::Index last = channel.A.rows() - 1;
+  channel.A.col(last).setZero();
+  channel.A.row(last) /= sample_time;
+  channel.b_now(last) /= sample_time;
+  channel.b_previous(last) /= sample_time;
+}
+
 /// theta = delay Ts + eps, 0 <= eps < Ts.
 struct Delay {
   int samples;
@@ -140,12 +160,13 @@ DiscreteChannel behind_washout(const TransferFunction& channel, double sample_ti
 /// With F the response behind the washout, F_i = a F_(i-1) + S_i - S_(i-1), which after the last coefficient
 /// m is F_(i+1) = a F_i + Ts rate: what it then adds to F_m is the step response of a first-order channel
 /// with m samples of dead time. Without a washout a = 1.
-DiscreteChannel of_coefficients(const StepCoefficients& S, double sample_time, double washout) {
+DiscreteChannel of_coefficients(const StepCoefficients& S, double sample_time, double washout,
+                                OutputSampling sampling) {
   if (!(S.end() / sample_time <= kMaxDelay))
     throw InputError("coefficients of a step response in samples", fmt::format("{}", S.end() / sample_time),
                      fmt::format("at most {}", kMaxDelay));
   DiscreteChannel result;
-  result.step = S.sampled(sample_time);
+  result.step = sampling == OutputSampling::average ? S.averaged(sample_time) : S.sampled(sample_time);
   const double rise = sample_time * S.rate();
   const double a = washout > 0 ? std::exp(-sample_time / washout) : 1.0;
   if (washout > 0) {
@@ -173,23 +194,29 @@ void require_sample_time(double sample_time) {
   }
 }
 
-DiscreteChannel discretise(const TransferFunction& channel, double sample_time) {
+DiscreteChannel discretise(const TransferFunction& channel, double sample_time, OutputSampling sampling) {
   require_sample_time(sample_time);
+  const bool averages = sampling == OutputSampling::average;
+  if (averages && channel.washout() > 0)
+    throw InputError("averages of an output", "a washout, which filters samples", "a channel without one");
   if (const auto& S = channel.step_coefficients())
-    return of_coefficients(*S, sample_time, channel.washout());
+    return of_coefficients(*S, sample_time, channel.washout(), sampling);
   if (channel.washout() > 0)
     return behind_washout(channel, sample_time);
   const Delay delay = split_dead_time(channel.dead_time(), sample_time);
-  const Realisation form = companion_form(channel);
+  const Realisation own = companion_form(channel);
+  const Realisation form = averages ? with_integral(own) : own;
 
   const Hold newer = hold(form, sample_time - delay.remainder);
-  DiscreteChannel result{newer.transition, newer.input, Eigen::VectorXd::Zero(channel.order()),
+  DiscreteChannel result{newer.transition, newer.input, Eigen::VectorXd::Zero(form.A.rows()),
                          form.C,           form.D,      delay.samples};
   if (delay.remainder > 0) {
     const Hold older = hold(form, delay.remainder);
     result.b_previous = newer.transition * older.input;
     result.A = newer.transition * older.transition;
   }
+  if (averages)
+    take_means(result, sample_time);
   if (!result.A.allFinite() || !result.b_now.allFinite() || !result.b_previous.allFinite()) {
     throw InputError("zero-order-hold equivalent", fmt::format("overflow at sample time {}", sample_time),
                      "poles and sample times whose exponential is finite");

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "plants/linear/transfer_function.hpp"
+#include "plants/output_sampling.hpp"
 
 namespace mpm {
 
@@ -55,9 +56,18 @@ void require_sample_time(double sample_time);
 /// their interval. The only state is that of the ramp which goes on after them, x(k+1) = x(k) + Ts rate
 /// u(k - m), or of the washout.
 ///
+/// With OutputSampling::average y(k) is the mean of the response over the sample time before sample k. It is
+/// one more state m, which y = m shows, exact as the others: the integral q' = C x + D u of the output stands
+/// beside x in the augmented matrix,
+///
+///   [A_c 0 B; C 0 D; 0 0 0],   m(k+1) = (q((k+1) Ts) - q(k Ts)) / Ts.
+///
+/// Of coefficients the means of S(t) take the place of S(i Ts).
+///
 /// Errors: InputError unless `sample_time` (same unit as the time constants) is finite and > 0, what dead
-/// time and coefficients reach back is at most kMaxDelay samples, and the result is finite (a fast unstable
-/// pole overflows).
-DiscreteChannel discretise(const TransferFunction& channel, double sample_time);
+/// time and coefficients reach back is at most kMaxDelay samples, the result is finite (a fast unstable
+/// pole overflows), and a channel behind a washout, which is a filter of samples, is not averaged.
+DiscreteChannel discretise(const TransferFunction& channel, double sample_time,
+                           OutputSampling sampling = OutputSampling::snapshot);
 
 }  // namespace mpm

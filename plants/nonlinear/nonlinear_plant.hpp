@@ -7,6 +7,7 @@
 
 #include "plants/nonlinear/nonlinear_model.hpp"
 #include "plants/nonlinear/ode_plant.hpp"
+#include "plants/output_sampling.hpp"
 #include "plants/plant.hpp"
 
 namespace mpm {
@@ -21,5 +22,14 @@ namespace mpm {
 std::unique_ptr<Plant> nonlinear_plant(const NonlinearModel& model, double sample_time,
                                        const OdeOptions& options, const std::vector<ParameterChange>& changes,
                                        Eigen::Index onset = 0);
+
+/// The same plant as a historian samples it (OdeRecorder): its output i is that of the time (k - delay_i) Ts,
+/// or its mean over the sample time before it. Errors: as nonlinear_plant(), and InputError for the
+/// simulation of somebody else, which has no outputs between samples.
+std::unique_ptr<Plant> nonlinear_recorder(const NonlinearModel& model, double sample_time,
+                                          const OdeOptions& options,
+                                          const std::vector<ParameterChange>& changes, Eigen::Index onset,
+                                          OutputSampling sampling,
+                                          const Eigen::Ref<const Eigen::VectorXd>& delay);
 
 }  // namespace mpm

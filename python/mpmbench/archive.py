@@ -12,6 +12,9 @@ from .program import run as run_program, temporary
 from .results import Comparison, Repair, rate_table
 from .signals import SIGNALS, Loop
 
+# Signals of which a study with a [record] may show methods something else; `export` has them as NAME_recorded.
+RECORDED = ["y", "u", "d"]
+
 # The rates on the page of an archive, of those that it has.
 SHOWN = ["answered", "false_alarm_healthy", "detected_impact", "power_05_impact", "located", "source_all"]
 
@@ -97,11 +100,12 @@ class Archive:
     def loop(self, index):
         """The loop of an experiment, as methods see it. One that the archive did not keep is run again. Of a study with
         worlds `benchmark` is that of the first loop."""
-        signals = self._stored(index)
+        signals = None if "[record" in self.attributes["scenario"] else self._stored(index)
         if signals is None:
             signals = self._simulated(index)
-        if "y_recorded" in signals:  # a degraded record is all that a method sees
-            signals["y"] = signals.pop("y_recorded")
+        for name in RECORDED:  # a degraded record is all that a method sees
+            if f"{name}_recorded" in signals:
+                signals[name] = signals.pop(f"{name}_recorded")
         return Loop(signals, self.context)
 
     def _stored(self, index):
@@ -112,14 +116,14 @@ class Archive:
             if index not in stored:
                 return None
             place = stored.index(index)
-            return {name: group[name][place].filled(float("nan")) for name in [*SIGNALS, "y_recorded"]
-                    if name in group.variables}
+            return {name: group[name][place].filled(float("nan")) for name in SIGNALS if name in group.variables}
 
     def _simulated(self, index):
         import pandas
         text = run_program(["export", self.path, "--table", "loops", "--index", index], quiet=True)
         table = pandas.read_csv(io.StringIO(text), float_precision="round_trip")
-        columns = {name: [column for column in table if column.split(".")[0] == name] for name in [*SIGNALS, "y_recorded"]}
+        columns = {name: [column for column in table if column.split(".")[0] == name] 
+                   for name in [*SIGNALS, *(f"{name}_recorded" for name in RECORDED)]}
         return {name: table[found].to_numpy(float).T for name, found in columns.items() if found}
 
     def truth(self, index):

@@ -9,7 +9,7 @@ namespace mpm {
 /// Version of the archive format. A reader refuses another major version; a minor version adds to the format
 /// without changing what was there.
 inline constexpr int kArchiveMajorVersion = 2;
-inline constexpr int kArchiveMinorVersion = 5;
+inline constexpr int kArchiveMinorVersion = 6;
 
 /// Writes a campaign and what it has found as an archive (docs/file_format.md), all or nothing
 /// (write_file_atomically()): HDF5 that also opens as netCDF-4. The data sets depend on the study and the

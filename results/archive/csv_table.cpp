@@ -102,11 +102,29 @@ void write_findings(const Campaign& campaign, const Write& write) {
               fmt::format("{}", finding.count), fmt::format("{}", finding.hits), number(finding.reported)}));
 }
 
-/// The CVs of the loop as the methods saw them, row by row.
-std::vector<std::string> recorded_cells(const Study& study, const ExperimentRecord& record) {
-  const RowMajorMatrix y = recorded(study, record.draw.index, record.loop->trajectory).y;
+/// A signal that the methods saw as something else than it was.
+struct RecordedSignal {
+  const char* name;
+  const char* variables;
+  Eigen::MatrixXd Trajectory::*member;
+};
+
+std::vector<RecordedSignal> recorded_signals(const RecordOptions& record) {
+  std::vector<RecordedSignal> signals;
+  if (record.alters())
+    signals.push_back({"y_recorded", "cv", &Trajectory::y});
+  if (!record.mv_shift.empty())
+    signals.push_back({"u_recorded", "mv", &Trajectory::u});
+  if (!record.md_shift.empty())
+    signals.push_back({"d_recorded", "md", &Trajectory::d});
+  return signals;
+}
+
+/// As the methods saw it, row by row.
+std::vector<std::string> recorded_cells(const Trajectory& kept, const RecordedSignal& signal) {
+  const RowMajorMatrix values = kept.*signal.member;
   std::vector<std::string> list;
-  for (const double value : y.reshaped<Eigen::RowMajor>())
+  for (const double value : values.reshaped<Eigen::RowMajor>())
     list.push_back(number(value));
   return list;
 }
@@ -132,9 +150,10 @@ void write_loops(const Campaign& campaign, const Write& write) {
   for (const RecordRow& signal : signals)
     for (const std::string& heading : headings(campaign, signal, 1))
       head.push_back(csv_field(heading));
-  if (campaign.study.record.alters())
-    for (const std::string& name : coordinates(campaign, "cv", 0))
-      head.push_back(csv_field(fmt::format("y_recorded.{}", name)));
+  const std::vector<RecordedSignal> recordings = recorded_signals(campaign.study.record);
+  for (const RecordedSignal& signal : recordings)
+    for (const std::string& name : coordinates(campaign, signal.variables, 0))
+      head.push_back(csv_field(fmt::format("{}.{}", signal.name, name)));
   write(line(head));
   const auto samples = static_cast<std::size_t>(campaign.study.simulation.samples);
   records_of(campaign).each([&](const ExperimentRecord& record) {
@@ -143,8 +162,11 @@ void write_loops(const Campaign& campaign, const Write& write) {
     std::vector<std::vector<std::string>> columns;  // of each signal, row by row
     for (const RecordRow& signal : signals)
       columns.push_back(cells(signal, record));
-    if (campaign.study.record.alters())
-      columns.push_back(recorded_cells(campaign.study, record));
+    if (!recordings.empty()) {
+      const Trajectory kept = recorded(campaign.study, record.draw.index, record.loop->trajectory);
+      for (const RecordedSignal& signal : recordings)
+        columns.push_back(recorded_cells(kept, signal));
+    }
     for (std::size_t sample = 0; sample < samples; ++sample) {
       std::vector<std::string> row{
           fmt::format("{}", record.draw.index), fmt::format("{}", sample),

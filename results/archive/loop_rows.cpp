@@ -74,6 +74,9 @@ std::vector<Row<Trajectory>> signal_rows(const Study& study) {
   };
   const std::string cv_unit = common_unit(plant.cvs), mv_unit = common_unit(plant.mvs);
   add("y", "measured CVs, noise included", cv_unit, "", "cv", &Trajectory::y);
+  if (study.record.resamples())
+    add("y_sampled", "CVs at the times of the rows of the record, noise included", cv_unit, "", "cv",
+        &Trajectory::y_sampled);
   add("u", "MVs", mv_unit, "u(k) acts from sample k on", "mv", &Trajectory::u);
   add("u_target", "targets of the MVs", mv_unit, "", "mv", &Trajectory::u_target);
   add("d", "measured disturbances", common_unit(plant.mds),

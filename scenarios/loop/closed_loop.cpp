@@ -18,6 +18,7 @@
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/excitation.hpp"
 #include "scenarios/loop/off_schedule.hpp"
+#include "scenarios/loop/record_rows.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/loop/world.hpp"
 #include "scenarios/study/study_controller.hpp"
@@ -126,6 +127,51 @@ class Surroundings {
   std::optional<StickyValve> valve_;
 };
 
+/// The rows of the record of one loop, where they are at other times than the samples.
+class RowRecorder {
+ public:
+  /// `plant` has the outputs of the rows, if there are any.
+  RowRecorder(const Study& study, const LoopSignals& signals, const Plant& plant, bool has_rows)
+      : study_(study), added_(signals.y_rows), plant_(plant) {
+    if (has_rows && added_.size() > 0) {
+      require_shape("disturbances of the rows", added_, study.cv_count(), study.simulation.samples);
+      output_.setZero(study.cv_count(), study.simulation.samples + 1);
+    }
+  }
+
+  /// Before the plant goes on from sample k.
+  void note(Eigen::Index k) {
+    if (output_.size() > 0)
+      output_.col(k) = plant_.output();
+  }
+
+  /// An analyser shows what it found, and rows of it are those of what it shows.
+  void finish(Trajectory& loop) {
+    if (output_.size() == 0)
+      return;
+    const Eigen::Index samples = added_.cols();
+    loop.y_sampled.setZero(added_.rows(), samples);
+    if (loop.status != ControlStatus::ok)
+      return;
+    note(samples);
+    loop.y_sampled = added_;
+    const std::vector<AnalyserTiming>& analysers = study_.controller.analysers;
+    for (Eigen::Index cv = 0; cv < added_.rows(); ++cv) {
+      const RowTime time = row_time(study_.record, VariableSort::cv, cv);
+      if (!analysers.empty() && analysers[static_cast<std::size_t>(cv)].is_analyser())
+        loop.y_sampled.row(cv) = rows_of_held(time, loop.y.row(cv));
+      else
+        loop.y_sampled.row(cv) += rows_of(time, output_.row(cv), samples);
+    }
+  }
+
+ private:
+  const Study& study_;
+  const Eigen::MatrixXd& added_;
+  const Plant& plant_;
+  Eigen::MatrixXd output_;  ///< ny x (N + 1)
+};
+
 /// The faults of the loop, at the sample of the onset.
 LoopFaults loop_faults(const ExperimentDraw& draw) {
   LoopFaults faults;
@@ -160,6 +206,50 @@ Eigen::VectorXd shares(const Onset& onset, Eigen::Index samples) {
   return a;
 }
 
+/// What is added to the plant at the times of the rows: responses to disturbances as they are, background and
+/// errors of sensors along straight lines, and the noise of the sample, of which one measurement has as much
+/// as another, and a mean as much as a measurement.
+Eigen::MatrixXd added_to_rows(const Study& study, const ExperimentDraw& draw, const LoopSignals& signals) {
+  Eigen::MatrixXd rows = unmeasured_disturbances_of_rows(study, draw);
+  const Eigen::MatrixXd lines = signals.y_d - unmeasured_disturbances(study, draw);
+  for (Eigen::Index cv = 0; cv < rows.rows(); ++cv) {
+    const RowTime time = row_time(study.record, VariableSort::cv, cv);
+    rows.row(cv) += rows_of_line(time, lines.row(cv)) + rows_of(time, signals.noise.row(cv), rows.cols());
+  }
+  return rows;
+}
+
+/// The outputs later by these samples, one a row.
+TransferMatrix delayed(TransferMatrix plant, const Eigen::VectorXd& delay, double sample_time) {
+  for (Eigen::Index row = 0; row < delay.size(); ++row)
+    for (Eigen::Index col = 0; col < plant.cols() && delay(row) > 0.0; ++col)
+      if (!plant(row, col).is_zero())
+        plant(row, col) = plant(row, col).with_dead_time_shifted(delay(row) * sample_time);
+  return plant;
+}
+
+/// The plant of an experiment, whose outputs are sampled in this way; `delay` has a part of a sample for each
+/// CV, or is empty for an instrument of the controller.
+std::unique_ptr<Plant> plant_as(const Study& study, const ExperimentDraw& draw, OutputSampling sampling,
+                                const Eigen::VectorXd& delay) {
+  const double Ts = study.controller.sample_time;
+  const World world = draw_world(study, draw.world);
+  if (study.nonlinear) {
+    const NonlinearModel model = with_parameters(study.nonlinear->model, world.parameters);
+    const std::vector<ParameterChange> changes = with_world_parameters(study, world, draw.parameters);
+    const OdeOptions& options = study.nonlinear->integration;
+    return delay.size() > 0
+               ? nonlinear_recorder(model, Ts, options, changes, draw.onset.sample, sampling, delay)
+               : nonlinear_plant(model, Ts, options, changes, draw.onset.sample);
+  }
+  const TransferMatrix healthy = world_plant(study, world);
+  const TransferMatrix plant = delayed(with_world_mismatches(healthy, draw.mismatches), delay, Ts);
+  if (draw.onset.from_the_start() || draw.mismatches.empty())
+    return std::make_unique<LinearPlant>(plant, Ts, sampling);
+  return std::make_unique<ChangingPlant>(delayed(healthy, delay, Ts), plant, Ts,
+                                         shares(draw.onset, study.simulation.samples), sampling);
+}
+
 }  // namespace
 
 void SolverStatistics::add(const SolverStatistics& other) {
@@ -170,7 +260,7 @@ void SolverStatistics::add(const SolverStatistics& other) {
 }
 
 Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
-                           const QpSolverFactory& factory, const StepObserver& observer) {
+                           const QpSolverFactory& factory, const StepObserver& observer, Plant* recorder) {
   require_fit(study, plant);
   const Eigen::Index samples = study.simulation.samples;
   require_shape("measured disturbances", signals.d, study.md_count(), samples);
@@ -211,6 +301,10 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     analysers.reset(plant.output());
   if (study.controller_program)
     trajectory.solver.largest_kkt_residual = kNaN;
+  RowRecorder rows(study, signals, recorder != nullptr ? *recorder : plant,
+                   recorder != nullptr || !study.record.looks_between_samples());
+  if (recorder != nullptr && trajectory.failure == LoopFailure::none)
+    begin(*recorder, input, trajectory);
   for (Eigen::Index k = 0; k < samples && trajectory.failure == LoopFailure::none; ++k) {
     trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
     analysers.pass(trajectory.y.col(k));
@@ -243,7 +337,9 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     input.segment(study.mv_count(), study.md_count()) = signals.d.col(k);
     if (inner > 0)
       input.tail(inner) = signals.within_plant.col(k);
-    if (plant.advance(input) != PlantStatus::ok) {
+    rows.note(k);
+    if (plant.advance(input) != PlantStatus::ok ||
+        (recorder != nullptr && recorder->advance(input) != PlantStatus::ok)) {
       fail(trajectory, LoopFailure::plant, plant.failure());
       break;
     }
@@ -251,6 +347,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     trajectory.u_target.col(k) = move.u_target;
     trajectory.samples_done = k + 1;
   }
+  rows.finish(trajectory);
   return trajectory;
 }
 
@@ -261,17 +358,16 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant_model
 }
 
 std::unique_ptr<Plant> experiment_plant(const Study& study, const ExperimentDraw& draw) {
-  const double Ts = study.controller.sample_time;
-  const World world = draw_world(study, draw.world);
-  if (study.nonlinear)
-    return nonlinear_plant(with_parameters(study.nonlinear->model, world.parameters), Ts,
-                           study.nonlinear->integration, with_world_parameters(study, world, draw.parameters),
-                           draw.onset.sample);
-  const TransferMatrix healthy = world_plant(study, world);
-  const TransferMatrix plant = with_world_mismatches(healthy, draw.mismatches);
-  if (draw.onset.from_the_start() || draw.mismatches.empty())
-    return std::make_unique<LinearPlant>(plant, Ts);
-  return std::make_unique<ChangingPlant>(healthy, plant, Ts, shares(draw.onset, study.simulation.samples));
+  return plant_as(study, draw, OutputSampling::snapshot, {});
+}
+
+std::unique_ptr<Plant> record_plant(const Study& study, const ExperimentDraw& draw) {
+  if (!study.record.looks_between_samples())
+    return nullptr;
+  Eigen::VectorXd delay(study.cv_count());
+  for (Eigen::Index cv = 0; cv < delay.size(); ++cv)
+    delay(cv) = row_time(study.record, VariableSort::cv, cv).delay();
+  return plant_as(study, draw, study.record.sampling, delay);
 }
 
 LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw) {
@@ -295,6 +391,8 @@ LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw) {
   signals.faults = loop_faults(draw);
   if (const Eigen::MatrixXd errors = sensor_errors(study, draw); errors.size() > 0)
     signals.y_d += errors;
+  if (study.record.resamples())
+    signals.y_rows = added_to_rows(study, draw, signals);
   return signals;
 }
 
@@ -308,7 +406,8 @@ Trajectory simulate_experiment(const Study& study, const ExperimentDraw& draw, c
     return simulate_experiment(with_tuning(study, draw), rest, factory, observer);
   }
   const std::unique_ptr<Plant> plant = experiment_plant(study, draw);
-  return run_closed_loop(study, *plant, experiment_signals(study, draw), factory, observer);
+  const std::unique_ptr<Plant> recorder = record_plant(study, draw);
+  return run_closed_loop(study, *plant, experiment_signals(study, draw), factory, observer, recorder.get());
 }
 
 }  // namespace mpm

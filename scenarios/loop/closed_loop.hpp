@@ -57,6 +57,8 @@ struct Trajectory {
   ControlStatus status = ControlStatus::ok;
   Eigen::Index samples_done = 0;  ///< columns after these are zero when the status is not `ok`
   Eigen::MatrixXd y, u, u_target, d, y_set;
+  /// The CVs at the times of the rows of the record, noise included; empty where these are the samples.
+  Eigen::MatrixXd y_sampled = {};
   SolverStatistics solver;
   LoopFailure failure = LoopFailure::none;  ///< another one if and only if the status is `failed`
   std::string message = {};                 ///< what failed, for people; empty when nothing did
@@ -99,6 +101,9 @@ struct LoopSignals {
   Eigen::MatrixXd u_d{};         ///< added to the MVs on their way to the plant, nu x N; empty: nothing
   Eigen::MatrixXd d_measured{};  ///< MDs as they are measured, nd x N; empty: d
   LoopFaults faults{};
+  /// What is added to the outputs of the plant at the times of the rows of the record, ny x N; empty: the
+  /// loop has no such rows.
+  Eigen::MatrixXd y_rows{};
 };
 
 /// Called after each step with the controller, whose two problems and answers it may look at.
@@ -121,8 +126,12 @@ using StepObserver = std::function<void(const Controller& controller)>;
 /// asks for, or the plant another sample time, other outputs or fewer inputs.
 ///
 /// A controller on a linear model thinks in deviations: a nonlinear plant goes in as a DeviationPlant.
+///
+/// A `recorder` is the same plant as the historian samples it (record_plant()): it has the inputs of the
+/// plant, and its outputs, which the controller never sees, are the rows of the record.
 Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
-                           const QpSolverFactory& factory, const StepObserver& observer = {});
+                           const QpSolverFactory& factory, const StepObserver& observer = {},
+                           Plant* recorder = nullptr);
 
 /// The same on the linear plant with these transfer functions.
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
@@ -131,6 +140,10 @@ Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, cons
 /// The plant of one experiment: that of its world, with its mismatches or changed parameters from the onset
 /// on.
 std::unique_ptr<Plant> experiment_plant(const Study& study, const ExperimentDraw& draw);
+
+/// The same plant, whose outputs are those at the times of the rows of the record, up to whole samples; null
+/// where the plant itself has them.
+std::unique_ptr<Plant> record_plant(const Study& study, const ExperimentDraw& draw);
 
 /// The signals that act on the loop of one experiment, from (study, draw) alone; `y_d` with the errors of its
 /// sensors.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/non_finite.hpp"
+#include "scenarios/loop/record_rows.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/random/random_stream.hpp"
 
@@ -109,8 +110,22 @@ Eigen::RowVectorXd filled(Eigen::RowVectorXd signal, GapFill fill) {
   return signal;
 }
 
+namespace {
+
+/// MVs and MDs are held from sample to sample.
+void shift_held(const RecordOptions& record, VariableSort sort, Eigen::MatrixXd& signals) {
+  for (Eigen::Index i = 0; i < signals.rows() && !record.shifts_of(sort).empty(); ++i)
+    signals.row(i) = rows_of_held(row_time(record, sort, i), Eigen::RowVectorXd(signals.row(i)));
+}
+
+}  // namespace
+
 Trajectory recorded(const Study& study, std::int64_t index, Trajectory loop) {
   const RecordOptions& record = study.record;
+  if (loop.y_sampled.size() > 0)
+    loop.y = std::move(loop.y_sampled);
+  shift_held(record, VariableSort::mv, loop.u);
+  shift_held(record, VariableSort::md, loop.d);
   if (record.outlier_share > 0.0)
     add_outliers(study, index, loop.y);
   if (record.quantisation > 0.0)

@@ -17,6 +17,8 @@ namespace mpm {
 /// The loop of experiment `index` as its record shows it: y in place of the measurements, one thing after the
 /// other, each only where `study.record` asks for it:
 ///
+/// 0. rows: with `sampling` and `shift` those of record_rows.hpp, exact (Trajectory::y_sampled), take the
+///    place of the samples. MVs and MDs are held, and shifted alone.
 /// 1. outliers: a sample of a CV is one with the probability outlier_share; outlier_size is added, up or
 /// down.
 /// 2. quantisation: the nearest multiple of the step.
@@ -28,7 +30,7 @@ namespace mpm {
 ///    stays NaN.
 ///
 /// A pure function of its arguments, with streams of its own; the basis case has kBasisIndex. MVs and
-/// measured disturbances are numbers that the controller computes or is told, and stay as they are.
+/// measured disturbances are numbers that the controller computes or is told: nothing else happens to them.
 Trajectory recorded(const Study& study, std::int64_t index, Trajectory loop);
 
 /// What a reader gets back of `signal` from a historian with a swinging door (Bristol 1990): an archived

@@ -10,6 +10,7 @@
 #include "base/non_finite.hpp"
 #include "plants/linear/linear_plant.hpp"
 #include "scenarios/loop/off_schedule.hpp"
+#include "scenarios/loop/record_rows.hpp"
 #include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
@@ -128,14 +129,28 @@ Eigen::RowVectorXd values(const Bursts& bursts, SignalSetting at) {
   return v;
 }
 
+TransferFunction model_of(const Disturbance& disturbance) {
+  assert(disturbance.model == DisturbanceModel::first_order || disturbance.Gd);
+  return disturbance.model == DisturbanceModel::first_order
+             ? TransferFunction::first_order(disturbance.gain, disturbance.time_constant)
+             : *disturbance.Gd;
+}
+
 Eigen::RowVectorXd through_model(const Disturbance& disturbance, double Ts, const Eigen::RowVectorXd& v) {
   if (disturbance.model == DisturbanceModel::direct)
     return v;
-  assert(disturbance.model == DisturbanceModel::first_order || disturbance.Gd);
-  const TransferMatrix Gd{{disturbance.model == DisturbanceModel::first_order
-                               ? TransferFunction::first_order(disturbance.gain, disturbance.time_constant)
-                               : *disturbance.Gd}};
-  return simulate(Gd, Ts, v);
+  return simulate(TransferMatrix{{model_of(disturbance)}}, Ts, v);
+}
+
+/// The same at the times of rows.
+Eigen::RowVectorXd through_model(const Disturbance& disturbance, double Ts, const Eigen::RowVectorXd& v,
+                                 const RowTime& rows) {
+  if (disturbance.model == DisturbanceModel::direct)
+    return rows_of_line(rows, v);
+  Eigen::RowVectorXd held(v.size() + 1);  // the last one acts after the last row
+  held << v, 0.0;
+  const TransferFunction Gd = model_of(disturbance).with_dead_time_shifted(rows.delay() * Ts);
+  return rows_of(rows, simulate(TransferMatrix{{Gd}}, Ts, held, rows.sampling), v.size());
 }
 
 /// A stream of its own for each disturbance of a scenario, so that no signal depends on the others.
@@ -160,13 +175,18 @@ void begin_at(const Onset& onset, Eigen::Ref<Eigen::RowVectorXd> signal) {
     signal(k) *= onset.share(k);
 }
 
-/// y_d of disturbance `number` of the experiment.
-Eigen::RowVectorXd values(const Study& study, const ExperimentDraw& draw, std::size_t number) {
-  const Disturbance& disturbance = draw.disturbances[number];
-  const std::size_t whose = disturbance.shares_signal ? 0 : number;
+/// v of disturbance `number` of the experiment.
+Eigen::RowVectorXd driving_values(const Study& study, const ExperimentDraw& draw, std::size_t number) {
+  const std::size_t whose = draw.disturbances[number].shares_signal ? 0 : number;
   Eigen::RowVectorXd v = signal_values(study, draw.index, whose, draw.disturbances[whose].signal);
   begin_at(draw.onset, v);
-  return through_model(disturbance, study.controller.sample_time, v);
+  return v;
+}
+
+/// y_d of disturbance `number` of the experiment.
+Eigen::RowVectorXd values(const Study& study, const ExperimentDraw& draw, std::size_t number) {
+  return through_model(draw.disturbances[number], study.controller.sample_time,
+                       driving_values(study, draw, number));
 }
 
 /// The disturbances that `place` puts in a row, none for those that are elsewhere.
@@ -269,6 +289,16 @@ Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw
   return sum_of_disturbances(study, draw, study.cv_count(), [](const Disturbance& disturbance) {
     return disturbance.is_on_cv() ? std::optional(disturbance.cv) : std::nullopt;
   });
+}
+
+Eigen::MatrixXd unmeasured_disturbances_of_rows(const Study& study, const ExperimentDraw& draw) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(study.cv_count(), study.simulation.samples);
+  for (std::size_t i = 0; i < draw.disturbances.size(); ++i)
+    if (const Disturbance& disturbance = draw.disturbances[i]; disturbance.is_on_cv())
+      sum.row(disturbance.cv) +=
+          through_model(disturbance, study.controller.sample_time, driving_values(study, draw, i),
+                        row_time(study.record, VariableSort::cv, disturbance.cv));
+  return sum;
 }
 
 Eigen::MatrixXd disturbances_of_mvs(const Study& study, const ExperimentDraw& draw) {

@@ -51,6 +51,10 @@ Eigen::MatrixXd unmeasured_disturbances(const Study& study, const ExperimentDraw
 /// The same on the MVs between controller and plant, nu x samples. Empty (0 x 0) where there are none.
 Eigen::MatrixXd disturbances_of_mvs(const Study& study, const ExperimentDraw& draw);
 
+/// The same on the CVs at the times of the rows of the record (record_rows): of y_d = G_d v the response, or
+/// its mean, itself; of a signal without G_d the straight lines between its samples.
+Eigen::MatrixXd unmeasured_disturbances_of_rows(const Study& study, const ExperimentDraw& draw);
+
 /// What a sensor with a bias or a drift adds to the measurements, ny x samples; empty (0 x 0) without one. A
 /// drift goes from the onset to its size at the last sample.
 Eigen::MatrixXd sensor_errors(const Study& study, const ExperimentDraw& draw);

@@ -1,5 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
+#include "plants/output_sampling.hpp"
+#include "scenarios/faults/other_fault.hpp"
 #include "scenarios/random/distribution.hpp"
 
 namespace mpm {
@@ -16,7 +21,13 @@ enum class GapFill {
 /// (SimulationOptions::noise_standard_deviation), to which ranges and resolutions of transmitters are chosen.
 struct RecordOptions {
   static constexpr int kMostCandidates = 9;  ///< each has a stream of its own
+  /// Shifts of rows, samples: no loop goes on for more than a sample after its last row.
+  static constexpr int kMostLate = 10, kMostEarly = 1;
 
+  /// Of the CVs, and by how many samples the rows of each CV, MV and MD are later than their number says
+  /// (scenarios/loop/record_rows); empty: by none.
+  OutputSampling sampling = OutputSampling::snapshot;
+  std::vector<double> cv_shift = {}, mv_shift = {}, md_shift = {};
   double outlier_share = 0.0;                              ///< of the samples of each CV, drawn one by one
   Distribution outlier_size = Distribution::constant(10);  ///< added, with either sign
   double quantisation = 0.0;                               ///< step between two values; 0: none
@@ -27,9 +38,26 @@ struct RecordOptions {
   int candidates = 0;            ///< further signals that it keeps (logged_candidates)
   double candidate_share = 0.5;  ///< of the disturbed loops in which one of them drives the disturbance
 
-  /// Does the historian keep anything else than what was measured?
+  const std::vector<double>& shifts_of(VariableSort sort) const {
+    return sort == VariableSort::cv ? cv_shift : sort == VariableSort::mv ? mv_shift : md_shift;
+  }
+  /// Are rows of CVs something else than their measurements at the samples?
+  bool resamples() const {
+    return sampling == OutputSampling::average ||
+           std::any_of(cv_shift.begin(), cv_shift.end(), [](double shift) { return shift != 0.0; });
+  }
+  /// The same of any variable.
+  bool moves_rows() const { return resamples() || !mv_shift.empty() || !md_shift.empty(); }
+  /// Do rows need the plant between the samples?
+  bool looks_between_samples() const {
+    return sampling == OutputSampling::average ||
+           std::any_of(cv_shift.begin(), cv_shift.end(),
+                       [](double shift) { return shift != static_cast<double>(static_cast<int>(shift)); });
+  }
+  /// Does the historian keep anything else of the CVs than what was measured?
   bool alters() const {
-    return outlier_share > 0.0 || quantisation > 0.0 || missing_share > 0.0 || compression > 0.0;
+    return resamples() || outlier_share > 0.0 || quantisation > 0.0 || missing_share > 0.0 ||
+           compression > 0.0;
   }
 
   bool operator==(const RecordOptions&) const = default;

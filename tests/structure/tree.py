@@ -14,7 +14,7 @@ ABOVE_THE_ROOMS = ["tests", "examples", "python", "octave"]
 FOLDERS = {
     "base": ["enum_words.hpp", "error.hpp", "non_finite.hpp", "number_text.hpp", "row_major.hpp", "row.hpp",
              "same_members.hpp", "sha256.hpp", "system"],
-    "plants": ["plant.hpp", "linear",
+    "plants": ["output_sampling.hpp", "plant.hpp", "linear",
                "nonlinear", "outside", "models"],
     "scenarios": ["random", "toml", "faults", "controller", "study", "loop"],
     "analysis": ["statistics", "identification", "sensitivity", "indicators", "basis", "methods", "study_files", "experiment",

@@ -65,9 +65,9 @@ ModelAssumption stated_assumption(const Study& study) {
     return {study.assessment.model, "the study says so"};
   if (study.world)
     return {AssessmentModel::benchmark, "the study has worlds"};
-  if (!study.nonlinear)
+  if (!study.nonlinear && !study.record.moves_rows())
     return {AssessmentModel::nominal, "the plant without a fault is the model"};
-  if (const std::shared_ptr<const ForeignModel>& foreign = study.nonlinear->model.foreign)
+  if (const ForeignModel* const foreign = study.nonlinear ? study.nonlinear->model.foreign.get() : nullptr)
     return {AssessmentModel::benchmark, fmt::format("the plant is {}, which no linear model matches exactly",
                                                     foreign->command().empty() ? "an FMU" : "a program")};
   return {AssessmentModel::automatic, ""};
@@ -81,7 +81,7 @@ ModelAssumption model_assumption(const AssessmentContext& context) {
     return stated;
   const std::shared_ptr<const LearntModel> learnt = learnt_model(context);
   if (!learnt)
-    return {AssessmentModel::nominal, "the benchmark of the nonlinear plant does not reject an exact model"};
+    return {AssessmentModel::nominal, "the benchmark does not reject an exact model"};
   return {
       AssessmentModel::benchmark,
       fmt::format("the benchmark rejects an exact model of {}",

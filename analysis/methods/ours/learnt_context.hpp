@@ -26,8 +26,8 @@ struct ModelAssumption {
 /// |---------------------------------------------------|---------------------------------------------------|
 /// | of a study with worlds                            | benchmark                                         |
 /// | a program or an FMU                               | benchmark                                         |
-/// | is nonlinear by equations of ours                 | benchmark if the benchmark rejects an exact model |
-/// |                                                   | (ModelErrors::rejects_exact_model()), or nominal  |
+/// | is nonlinear by equations of ours, or its record  | benchmark if the benchmark rejects an exact model |
+/// | has averages or shifted rows                      | (ModelErrors::rejects_exact_model()), or nominal  |
 /// | the linear model                                  | nominal                                           |
 ModelAssumption model_assumption(const AssessmentContext& context);
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plants/output_sampling.hpp"
+#include "scenarios/faults/other_fault.hpp"
+#include "scenarios/study/record_options.hpp"
+
+// When the rows of a record are: row k of a variable has its value at (k + shift) Ts, or its mean over the
+// sample time that ends there.
+
+namespace mpm {
+
+/// When a variable is sampled for the rows of a record.
+struct RowTime {
+  OutputSampling sampling = OutputSampling::snapshot;
+  double shift = 0.0;  ///< samples; above 0: a row holds what the variable is later
+
+  /// The sample at or after the time of row 0, and by how many samples it is after it, from 0 to below 1.
+  Eigen::Index sample() const;
+  double delay() const;
+  bool is_at_samples() const { return sampling == OutputSampling::snapshot && delay() == 0.0; }
+};
+
+/// That of a CV, MV or MD of this place. MVs and MDs are held over a sample, and never averaged.
+RowTime row_time(const RecordOptions& record, VariableSort sort, Eigen::Index variable);
+
+/// Rows from what is known at each sample `at_samples` (N or more), with the delay of the row: that of sample
+/// k + sample(), at the ends of the record the nearest one.
+Eigen::RowVectorXd rows_of(const RowTime& time, const Eigen::Ref<const Eigen::RowVectorXd>& at_samples,
+                           Eigen::Index rows);
+
+/// Rows of a signal that is held from each sample to the next one.
+Eigen::RowVectorXd rows_of_held(const RowTime& time, const Eigen::Ref<const Eigen::RowVectorXd>& signal);
+
+/// Rows of a signal that goes along straight lines from sample to sample.
+Eigen::RowVectorXd rows_of_line(const RowTime& time, const Eigen::Ref<const Eigen::RowVectorXd>& signal);
+
+}  // namespace mpm
