@@ -198,8 +198,8 @@ double spectral_radius_of(const Eigen::MatrixXd& A) {
 
 /// Does the fault make the loop another one, whose law this is not?
 bool changes_loop(const OtherFault& fault) {
-  return fault.kind == OtherFaultKind::stiction || fault.kind == OtherFaultKind::deadband ||
-         fault.kind == OtherFaultKind::held_mv;
+  const FaultEffect effect = info_of(fault.kind).effect;
+  return effect == FaultEffect::valve || effect == FaultEffect::hold;
 }
 
 bool has_linear_law(const Study& study, bool has_active_limits) {

@@ -290,6 +290,13 @@ OptionKeys tuning_keys(Study& study) {
       key::check(refuse_no_tuning)};
 }
 
+std::vector<const char*> other_fault_meanings() {
+  std::vector<const char*> meanings;
+  for (const OtherFaultKind kind : kOtherFaultKinds)
+    meanings.push_back(info_of(kind).meaning);
+  return meanings;
+}
+
 OptionKeys other_keys(Study& study) {
   OtherRanges& ranges = study.other;
   const NumberRule positive = NumberRule::positive();
@@ -298,13 +305,7 @@ OptionKeys other_keys(Study& study) {
       table.refuse("weights", "a weight of 0 for everything that the loops can have", "at least one > 0");
   };
   return {
-      weights_key("weights", kOtherFaultKinds, 0, ranges.weight,
-                  {"relative frequency of a sensor with a bias",
-                   "of a sensor whose error grows linearly from the onset to the end of the record",
-                   "of a valve with the two parameters S and J of Choudhury, Thornhill and Shah (2005)",
-                   "of a valve with J = 0", "of an MD whose measurement has a wrong gain",
-                   "of an MD whose measurement is noisy", "of a soft range that was moved in the controller",
-                   "of an MV that an operator holds where it is, without the controller being told"},
+      weights_key("weights", kOtherFaultKinds, 0, ranges.weight, other_fault_meanings(),
                   "relative frequencies of the kinds")
           .otherwise("all 1")
           .allow("some kind > 0 that the loops can have"),

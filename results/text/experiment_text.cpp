@@ -135,13 +135,13 @@ std::string tuning_text(const Study& study, const TuningChange& tuning) {
 std::string other_text(const Study& study, const OtherFault& fault) {
   std::string kind(to_string(fault.kind));
   std::replace(kind.begin(), kind.end(), '_', ' ');
-  const VariableSort sort = sort_of(fault.kind);
+  const VariableSort sort = info_of(fault.kind).sort;
   const auto& variables = sort == VariableSort::cv   ? study.plant.cvs
                           : sort == VariableSort::mv ? study.plant.mvs
                                                      : study.plant.mds;
   const std::string& name = variables[static_cast<std::size_t>(fault.variable)].name;
-  return fault.kind == OtherFaultKind::held_mv ? fmt::format("{}: {}", kind, name)
-                                               : fmt::format("{} of {}: {:.3g}", kind, name, fault.size);
+  return std::isnan(fault.size) ? fmt::format("{}: {}", kind, name)
+                                : fmt::format("{} of {}: {:.3g}", kind, name, fault.size);
 }
 
 std::string onset_text(const Onset& onset) {

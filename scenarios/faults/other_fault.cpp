@@ -1,11 +1,8 @@
 #include "scenarios/faults/other_fault.hpp"
 
-#include <cmath>
+#include <cassert>
 #include <tuple>
 
-#include <fmt/format.h>
-
-#include "base/error.hpp"
 #include "base/same_members.hpp"
 
 namespace mpm {
@@ -16,57 +13,74 @@ auto members(const OtherFault& fault) {
   return std::tie(kind, variable, size, jump);
 }
 
-void require_width(const char* name, double width) {
-  if (!std::isfinite(width) || width < 0.0)
-    throw InputError(name, fmt::format("{}", width), "a finite number >= 0");
+std::unique_ptr<ValveStem> sticky(const OtherFault& fault, double u) {
+  return std::make_unique<StickyValve>(fault.size, fault.jump, u);
 }
 
 }  // namespace
 
-VariableSort sort_of(OtherFaultKind kind) {
-  switch (kind) {
-    case OtherFaultKind::sensor_bias:
-    case OtherFaultKind::sensor_drift:
-    case OtherFaultKind::limit:
-      return VariableSort::cv;
-    case OtherFaultKind::stiction:
-    case OtherFaultKind::deadband:
-    case OtherFaultKind::held_mv:
-      return VariableSort::mv;
-    case OtherFaultKind::md_gain:
-    case OtherFaultKind::md_noise:
-      return VariableSort::md;
-  }
-  return VariableSort::cv;
+const OtherFaultInfo& info_of(OtherFaultKind kind) {
+  using R = OtherRanges;
+  static const std::array<OtherFaultInfo, kOtherFaultKinds.size()> table{{
+      {.kind = OtherFaultKind::sensor_bias,
+       .meaning = "relative frequency of a sensor with a bias",
+       .sort = VariableSort::cv,
+       .effect = FaultEffect::sensor_error,
+       .size = &R::sensor,
+       .unit = SizeUnit::noise,
+       .has_either_sign = true},
+      {.kind = OtherFaultKind::sensor_drift,
+       .meaning = "of a sensor whose error grows linearly from the onset to the end of the record",
+       .sort = VariableSort::cv,
+       .effect = FaultEffect::sensor_error,
+       .size = &R::sensor,
+       .unit = SizeUnit::noise,
+       .has_either_sign = true,
+       .grows_to_end = true},
+      {.kind = OtherFaultKind::stiction,
+       .meaning = "of a valve with the two parameters S and J of Choudhury, Thornhill and Shah (2005)",
+       .sort = VariableSort::mv,
+       .effect = FaultEffect::valve,
+       .size = &R::valve,
+       .unit = SizeUnit::hard_range,
+       .jump = &R::jump,
+       .stem = sticky},
+      {.kind = OtherFaultKind::deadband,
+       .meaning = "of a valve with J = 0",
+       .sort = VariableSort::mv,
+       .effect = FaultEffect::valve,
+       .size = &R::valve,
+       .unit = SizeUnit::hard_range,
+       .stem = sticky},
+      {.kind = OtherFaultKind::md_gain,
+       .meaning = "of an MD whose measurement has a wrong gain",
+       .sort = VariableSort::md,
+       .effect = FaultEffect::md_error,
+       .size = &R::md_gain,
+       .is_factor = true},
+      {.kind = OtherFaultKind::md_noise,
+       .meaning = "of an MD whose measurement is noisy",
+       .sort = VariableSort::md,
+       .effect = FaultEffect::md_error,
+       .size = &R::md_noise},
+      {.kind = OtherFaultKind::limit,
+       .meaning = "of a soft range that was moved in the controller",
+       .sort = VariableSort::cv,
+       .effect = FaultEffect::limit,
+       .size = &R::limit,
+       .unit = SizeUnit::soft_range,
+       .has_either_sign = true},
+      {.kind = OtherFaultKind::held_mv,
+       .meaning = "of an MV that an operator holds where it is, without the controller being told",
+       .sort = VariableSort::mv,
+       .effect = FaultEffect::hold},
+  }};
+  assert(table[static_cast<std::size_t>(kind)].kind == kind);
+  return table[static_cast<std::size_t>(kind)];
 }
 
 bool operator==(const OtherFault& a, const OtherFault& b) {
   return same_members(members(a), members(b));
-}
-
-StickyValve::StickyValve(double stickband, double jump, double u)
-    : stickband_(stickband), jump_(jump), position_(u), previous_(u), rest_(u) {
-  require_width("stickband of a valve", stickband);
-  require_width("jump of a valve", jump);
-}
-
-double StickyValve::follow(double u) {
-  const double move = u - previous_;
-  if (!rests_ && move * last_move_ <= 0.0) {
-    rests_ = true;
-    rest_ = previous_;
-  }
-  if (rests_ && -direction_ * (u - rest_) > stickband_) {
-    direction_ = -direction_;
-    rests_ = false;
-  } else if (rests_ && direction_ * (u - rest_) > jump_) {
-    rests_ = false;
-  }
-  if (!rests_)
-    position_ = u - direction_ * (stickband_ - jump_) / 2.0;
-  previous_ = u;
-  last_move_ = move;
-  return position_;
 }
 
 }  // namespace mpm

@@ -2,13 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <vector>
 
 #include <Eigen/Core>
 
 #include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/faults/valve_stem.hpp"
 #include "scenarios/random/distribution.hpp"
 
 // What can be wrong in a loop whose model is right and whose plant nobody disturbs: instruments, valves,
@@ -33,9 +34,8 @@ inline constexpr auto kWords<OtherFaultKind> = word_list("sensor_bias", "sensor_
                                                          "held_mv");
 inline constexpr auto kOtherFaultKinds = enumerators<OtherFaultKind>();
 
-/// What a fault of this kind is about.
+/// What a fault is about.
 enum class VariableSort { cv, mv, md };
-VariableSort sort_of(OtherFaultKind kind);
 
 /// | kind         | variable | size                                                        |
 /// |--------------|----------|-------------------------------------------------------------|
@@ -82,30 +82,40 @@ struct OtherRanges {
   bool operator==(const OtherRanges&) const = default;
 };
 
-/// A control valve with stiction: the two-parameter model of Choudhury, Thornhill and Shah ("Modelling valve
-/// stiction", Control Engineering Practice 13, 2005, 641-658), with the stop at every reversal as Kano et al.
-/// (2004) have it. The stem rests when the signal stops or turns. It moves again when the signal is S beyond
-/// the point u_s of its rest in the other direction, or J in the same one. A moving stem stands at
-///
-///   x = u - d (S - J) / 2,   d = 1 upwards, -1 downwards,
-///
-/// so that it jumps by J when it breaks loose after a reversal, and lags by the deadband S - J. J = 0 is a
-/// deadband without a jump.
-class StickyValve {
- public:
-  /// At rest where the signal is `u`. All in the unit of the MV. Errors: InputError unless S and J are finite
-  /// and >= 0.
-  StickyValve(double stickband, double jump, double u);
-
-  /// Position of the stem after the signal `u`.
-  double follow(double u);
-
- private:
-  double stickband_, jump_;
-  double position_, previous_, rest_;
-  double last_move_ = 0.0;
-  double direction_ = 1.0;
-  bool rests_ = true;
+/// What a fault changes in its loop. Several kinds of faults may change the same thing in other ways.
+enum class FaultEffect : std::int8_t {
+  sensor_error,  ///< something is added to the measurement of a CV
+  valve,         ///< a ValveStem follows the signal of an MV
+  md_error,      ///< something is added to the measurement of an MD
+  limit,         ///< both soft limits of a CV move in the controller
+  hold,          ///< an MV stays where it is, and nobody tells the controller
 };
+
+/// What the range of a size is in parts of; 1 where a loop has none.
+enum class SizeUnit : std::int8_t {
+  own,         ///< the unit of the variable, or a factor
+  noise,       ///< standard deviation of the noise of the CV
+  hard_range,  ///< width of the hard limits of the MV
+  soft_range,  ///< width of the soft limits of the CV
+};
+
+/// All that is known of a kind of fault. A further kind is an enumerator with its word, and a row of the
+/// table in other_fault.cpp; one that changes something else is a FaultEffect, too.
+struct OtherFaultInfo {
+  OtherFaultKind kind;
+  const char* meaning;  ///< of its key in [other.weights]
+  VariableSort sort;    ///< of the variable that it is about
+  FaultEffect effect;
+  Distribution OtherRanges::*size = nullptr;  ///< from which its size is drawn; null: it has none
+  SizeUnit unit = SizeUnit::own;
+  bool has_either_sign = false;
+  Distribution OtherRanges::*jump = nullptr;  ///< from which OtherFault::jump over its size is drawn
+  bool is_factor = false;                     ///< its size is a factor, and 1 is none
+  bool grows_to_end = false;                  ///< to its size at the last sample, whatever the onset says
+  std::unique_ptr<ValveStem> (*stem)(const OtherFault& fault,
+                                     double u) = nullptr;  ///< of a valve at rest at u
+};
+
+const OtherFaultInfo& info_of(OtherFaultKind kind);
 
 }  // namespace mpm

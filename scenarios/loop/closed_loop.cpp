@@ -112,7 +112,7 @@ class Surroundings {
     if (faults_.valve && k >= faults_.valve->sample) {
       const LoopFaults::Valve& fault = *faults_.valve;
       if (!valve_)
-        valve_.emplace(fault.stickband, fault.jump, before(fault.mv));
+        valve_ = info_of(fault.fault.kind).stem(fault.fault, before(fault.mv));
       acting(fault.mv) = valve_->follow(u(fault.mv));
     }
     if (u_d_.size() > 0)
@@ -124,7 +124,7 @@ class Surroundings {
   const LoopFaults& faults_;
   const Eigen::MatrixXd& u_d_;
   OffSchedule schedule_;
-  std::optional<StickyValve> valve_;
+  std::unique_ptr<ValveStem> valve_;
 };
 
 /// The rows of the record of one loop, where they are at other times than the samples.
@@ -178,23 +178,13 @@ LoopFaults loop_faults(const ExperimentDraw& draw) {
   if (!draw.other)
     return faults;
   const OtherFault& fault = *draw.other;
-  switch (fault.kind) {
-    case OtherFaultKind::stiction:
-    case OtherFaultKind::deadband:
-      faults.valve = {fault.variable, fault.size, fault.jump, draw.onset.sample};
-      break;
-    case OtherFaultKind::held_mv:
-      faults.hold = {fault.variable, draw.onset.sample};
-      break;
-    case OtherFaultKind::limit:
-      faults.limit = {fault.variable, fault.size, draw.onset.sample};
-      break;
-    case OtherFaultKind::sensor_bias:
-    case OtherFaultKind::sensor_drift:
-    case OtherFaultKind::md_gain:
-    case OtherFaultKind::md_noise:
-      break;  // signals
-  }
+  const FaultEffect effect = info_of(fault.kind).effect;
+  if (effect == FaultEffect::valve)
+    faults.valve = {fault.variable, fault, draw.onset.sample};
+  if (effect == FaultEffect::hold)
+    faults.hold = {fault.variable, draw.onset.sample};
+  if (effect == FaultEffect::limit)
+    faults.limit = {fault.variable, fault.size, draw.onset.sample};
   return faults;
 }
 

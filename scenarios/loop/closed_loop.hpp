@@ -11,6 +11,7 @@
 #include "base/enum_words.hpp"
 #include "plants/linear/transfer_matrix.hpp"
 #include "plants/plant.hpp"
+#include "scenarios/faults/other_fault.hpp"
 #include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 #include "solvers/controller.hpp"
@@ -69,7 +70,7 @@ struct Trajectory {
 struct LoopFaults {
   struct Valve {
     Eigen::Index mv;
-    double stickband, jump;  ///< of a StickyValve
+    OtherFault fault;
     int sample;
   };
   struct Hold {

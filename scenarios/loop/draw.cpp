@@ -105,8 +105,8 @@ ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultS
     disturbance.gain *= scales.disturbance;
   if (draw.other) {
     OtherFault& fault = *draw.other;
-    fault.size = fault.kind == OtherFaultKind::md_gain ? std::pow(fault.size, scales.other)
-                                                       : scales.other * fault.size;
+    fault.size =
+        info_of(fault.kind).is_factor ? std::pow(fault.size, scales.other) : scales.other * fault.size;
     fault.jump *= scales.other;
   }
   draw.scales = scales;

@@ -251,44 +251,42 @@ double width(const Limits& limits, Eigen::Index variable) {
 }
 
 std::vector<Eigen::Index> variables_of(const Study& study, OtherFaultKind kind) {
-  if (sort_of(kind) == VariableSort::md)
+  const OtherFaultInfo& info = info_of(kind);
+  if (info.sort == VariableSort::md)
     return moving_mds(study);
   std::vector<Eigen::Index> variables =
-      every_place(sort_of(kind) == VariableSort::cv ? study.cv_count() : study.mv_count());
-  if (kind == OtherFaultKind::limit)
+      every_place(info.sort == VariableSort::cv ? study.cv_count() : study.mv_count());
+  if (info.effect == FaultEffect::limit)
     std::erase_if(variables, [&](Eigen::Index cv) { return !is_limited(study, cv); });
   return variables;
 }
 
-OtherFault other_fault(const Study& study, OtherFaultKind kind, Eigen::Index variable, RandomStream& stream) {
-  const OtherRanges& ranges = study.other;
-  OtherFault fault{kind, variable};
-  switch (kind) {
-    case OtherFaultKind::sensor_bias:
-    case OtherFaultKind::sensor_drift: {
+double unit_size(const Study& study, SizeUnit unit, Eigen::Index variable) {
+  switch (unit) {
+    case SizeUnit::noise: {
       const double noise = study.simulation.noise_standard_deviation(variable);
-      fault.size = either_sign(ranges.sensor.sample(stream) * (noise > 0.0 ? noise : 1.0), stream);
-      break;
+      return noise > 0.0 ? noise : 1.0;
     }
-    case OtherFaultKind::stiction:
-    case OtherFaultKind::deadband:
-      fault.size = ranges.valve.sample(stream) * width(study.controller.mv_hard, variable);
-      if (kind == OtherFaultKind::stiction)
-        fault.jump = ranges.jump.sample(stream) * fault.size;
-      break;
-    case OtherFaultKind::md_gain:
-      fault.size = ranges.md_gain.sample(stream);
-      break;
-    case OtherFaultKind::md_noise:
-      fault.size = ranges.md_noise.sample(stream);
-      break;
-    case OtherFaultKind::limit:
-      fault.size =
-          either_sign(ranges.limit.sample(stream) * width(study.controller.cv_soft, variable), stream);
-      break;
-    case OtherFaultKind::held_mv:
+    case SizeUnit::hard_range:
+      return width(study.controller.mv_hard, variable);
+    case SizeUnit::soft_range:
+      return width(study.controller.cv_soft, variable);
+    case SizeUnit::own:
       break;
   }
+  return 1.0;
+}
+
+OtherFault other_fault(const Study& study, OtherFaultKind kind, Eigen::Index variable, RandomStream& stream) {
+  const OtherFaultInfo& info = info_of(kind);
+  OtherFault fault{kind, variable};
+  if (info.size == nullptr)
+    return fault;
+  fault.size = (study.other.*info.size).sample(stream) * unit_size(study, info.unit, variable);
+  if (info.has_either_sign)
+    fault.size = either_sign(fault.size, stream);
+  if (info.jump != nullptr)
+    fault.jump = (study.other.*info.jump).sample(stream) * fault.size;
   return fault;
 }
 
@@ -377,7 +375,7 @@ void draw_other_fault(const Study& study, ExperimentDraw& draw) {
   const OtherFaultKind kind = kOtherFaultKinds[draw_place(weights, stream)];
   const Eigen::Index variable = draw_from(variables_of(study, kind), stream);
   draw.other = other_fault(study, kind, variable, stream);
-  const VariableSort sort = sort_of(kind);
+  const VariableSort sort = info_of(kind).sort;
   draw.affected_cvs =
       sort == VariableSort::cv
           ? std::vector<Eigen::Index>{variable}

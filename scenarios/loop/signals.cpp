@@ -319,11 +319,10 @@ Eigen::MatrixXd disturbances_within_plant(const Study& study, const ExperimentDr
 
 Eigen::MatrixXd sensor_errors(const Study& study, const ExperimentDraw& draw) {
   const std::optional<OtherFault>& fault = draw.other;
-  const bool drifts = fault && fault->kind == OtherFaultKind::sensor_drift;
-  if (!drifts && !(fault && fault->kind == OtherFaultKind::sensor_bias))
+  if (!fault || info_of(fault->kind).effect != FaultEffect::sensor_error)
     return {};
   const Eigen::Index N = study.simulation.samples;
-  const Onset onset = drifts
+  const Onset onset = info_of(fault->kind).grows_to_end
                           ? Onset{draw.onset.sample, std::max(1, static_cast<int>(N) - 1 - draw.onset.sample)}
                           : draw.onset;
   Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(study.cv_count(), N);
@@ -334,11 +333,11 @@ Eigen::MatrixXd sensor_errors(const Study& study, const ExperimentDraw& draw) {
 
 Eigen::MatrixXd measurements_of_mds(const Study& study, const ExperimentDraw& draw) {
   const std::optional<OtherFault>& fault = draw.other;
-  if (!fault || sort_of(fault->kind) != VariableSort::md)
+  if (!fault || info_of(fault->kind).effect != FaultEffect::md_error)
     return {};
   Eigen::MatrixXd d = measured_disturbances(study);
   Eigen::RowVectorXd error = (fault->size - 1.0) * d.row(fault->variable);
-  if (fault->kind == OtherFaultKind::md_noise) {
+  if (!info_of(fault->kind).is_factor) {
     RandomStream stream = experiment_stream(study, draw.index, StreamId::md_measurement);
     for (double& e : error)
       e = fault->size * stream.normal();

@@ -12,7 +12,7 @@
 #include "analysis/methods/ours/disturbance_scan.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "base/non_finite.hpp"
-#include "scenarios/faults/other_fault.hpp"
+#include "scenarios/faults/valve_stem.hpp"
 
 namespace mpm {
 namespace {

@@ -7,6 +7,7 @@
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
 #include "scenarios/faults/other_fault.hpp"
+#include "scenarios/faults/valve_stem.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/fault_draw.hpp"
