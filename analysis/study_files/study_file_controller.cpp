@@ -144,19 +144,17 @@ OptionKeys keys(CvOptions& cv) {
                       "time")
               .otherwise("none: at once")
               .allow("> 0; with `setpoint_weight`"),
-          key::option(
-              "bias_ramp", "number",
-              "of a CV that integrates: the share of what the output bias moves from one sample to the next "
-              "that counts as its ramp. 0: the bias is a constant, and a flow that is not known leaves an "
-              "offset")
+          key::option("bias_ramp", "number",
+                      "share of the change of the output bias from one sample to the next that counts as its "
+                      "ramp. 0: the bias is a constant, and an unknown flow leaves an offset")
               .otherwise(fmt::format("{} for a CV that integrates", kBiasRamp))
               .allow("0 to 1; for a CV that integrates"),
           key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
               .otherwise("required without a setpoint")
               .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
-          analyser_period(
-              cv.analyser,
-              "of a CV of an analyser: samples from one analysis to the next, between which it is held"),
+          analyser_period(cv.analyser,
+                          "for a CV that an analyser measures: samples from one analysis to the next; in "
+                          "between the CV is held"),
           analyser_delay(cv.analyser, "samples from taking a sample of the stream to the analysis")
               .also("below `simulation.samples`"),
           key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
@@ -164,7 +162,7 @@ OptionKeys keys(CvOptions& cv) {
 }
 
 OptionKeys keys(AnalyserTiming& md) {
-  return {analyser_period(md, "samples from one measurement to the next, between which it is held"),
+  return {analyser_period(md, "samples from one measurement to the next; in between the MD is held"),
           analyser_delay(md, "samples from the measurement to when controller and historian have it")};
 }
 

@@ -123,8 +123,8 @@ OptionKeys fmu_keys(ForeignPlant& plant, const PlantModel& model) {
       key::number("time_factor", plant.time_factor, NumberRule::positive(),
                   "time units of the FMU (usually seconds) in one time unit of the study: 60 for `\"min\"`"),
       key::option("step", "number",
-                  "longest communication step, in the time of the FMU: a sample is as many equal ones as it "
-                  "needs, with inputs held")
+                  "longest communication step, in the time of the FMU; a sample is divided into equal steps, "
+                  "with inputs held")
           .otherwise("a sample is one")
           .allow("> 0")
           .read([&plant](const TomlTable& table, const std::string& key) {

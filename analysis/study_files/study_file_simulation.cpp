@@ -326,13 +326,13 @@ OptionKeys simulation_keys(Study& study) {
           .read(read_noise),
       key::optional_table(
           "noise", [&options] { return noise_keys(options.noise); },
-          "what the noise is beside its standard deviation")
+          "distribution, colour and size of the noise")
           .otherwise("white, normal, of the same size in every experiment"),
       key::option(
           "excitation", "text",
-          "whose the signals below are. `\"shared\"`: all loops have the same ones, the benchmark among "
-          "them. "
-          "`\"each\"`: every loop has its own: random steps and variations drawn anew, listed steps at other "
+          "which loops share the signals below. `\"shared\"`: all loops have the same ones, the benchmark "
+          "among them. `\"each\"`: every loop has its own: random steps and variations drawn anew, listed "
+          "steps at other "
           "times, in another order and, of MDs and setpoints, by half of the listed move to all of it. "
           "`\"none\"`: nothing but noise and faults moves the loop")
           .otherwise("`\"shared\"`, where anything excites")

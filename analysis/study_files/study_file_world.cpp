@@ -133,7 +133,7 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
                  "loops have "
                  "as many of their own"),
       key::distribution("gain_factor", ranges.gain_factor, positive,
-                        "factor of the gain of a channel of the plant, in each channel another one", "1"),
+                        "factor of the gain of a channel of the plant, drawn for each channel", "1"),
       key::distribution("time_constant_factor", ranges.time_constant_factor, positive,
                         "factor of its time constants", "1")
           .also(kNoLongMemory),
@@ -147,13 +147,11 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
           .also(kNoLongMemory),
       key::distribution("noise_factor", ranges.noise_factor, rule,
                         "factor of the measurement noise of a CV, in the benchmark as well", "1"),
-      key::whole(
-          "cost_loops", ranges.cost_loops, 1, kMostCostLoops,
-          "pairs of loops, with the fault and without it, over whose noise its cost is an expectation"),
-      key::whole(
-          "repair_loops", ranges.repair_loops, 0, kMostCostLoops,
-          "loops over whose noise the gain of repairing a channel is an expectation, each run once for "
-          "every channel that differs from the model; 0: `repair_gain` is not computed"),
+      key::whole("cost_loops", ranges.cost_loops, 1, kMostCostLoops,
+                 "pairs of loops, with the fault and without it, over whose noise its cost is averaged"),
+      key::whole("repair_loops", ranges.repair_loops, 0, kMostCostLoops,
+                 "loops over whose noise the gain of repairing a channel is averaged, each run once for "
+                 "every channel that differs from the model; 0: `repair_gain` is not computed"),
       key::list<WorldParameter>(
           "plant_parameter", kMostParameters,
           [&study](WorldParameter& parameter) { return parameter_keys(parameter, study); }, take,
@@ -165,8 +163,8 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
       key::check([&ranges, &study](const TomlTable& world) { refuse_long_world(world, ranges, study); }),
       key::table(
           "background", [&ranges, &study] { return background_keys(ranges.background, study); },
-          "disturbances that are always there: first-order noise of its own on every CV and every MV, other "
-          "numbers in each loop")};
+          "disturbances that are always there: independent first-order noise on every CV and every MV, drawn "
+          "anew in each loop")};
 }
 
 }  // namespace

@@ -80,9 +80,9 @@ OptionKeys transfer_function_keys(const std::string& input, const std::string& p
               .allow(">= 0, at most 10000 sample times"),
           key::option("step", "list of numbers",
                       "coefficients of the step response, as dynamic matrix control has them: values 1, 2, "
-                      "... intervals after a step of 1. What is simulated and predicted has these "
-                      "coefficients; the last value goes on, of a channel that integrates the last slope. "
-                      "Parameters are those of a transfer function that is fitted to them",
+                      "... intervals after a step of 1. Simulation and prediction use these coefficients; "
+                      "after the last one its value continues, or the last slope of a channel that "
+                      "integrates. Parameters are those of a transfer function that is fitted to them",
                       "CV / " + input)
               .otherwise("none; with `step_interval`")
               .allow("8 to 1000 finite numbers, until the response has settled"),
