@@ -10,14 +10,14 @@
 
 namespace mpm {
 
-/// Whose processor time (thread_seconds()) a derived value costs: that of the first who asks for it, or of
-/// each who asks for it, as if each made it.
+/// Who pays for a derived value in processor time (thread_seconds()): the first caller that asks for it, or
+/// each caller, as if each made it.
 enum class PaidBy : std::int8_t { first, each };
 
 /// Values that are derived from one thing: a record, a benchmark, a world. Each is made when it is first
 /// asked for, and is kept for all who ask again. Its type and its key name it among the values of this thing.
 ///
-/// Nothing is kept before keep(), and nothing in a copy, which may be changed: there each asker makes its
+/// Nothing is kept before keep(), and nothing in a copy, which may be changed: there each caller makes its
 /// own. The owner must not change what the values are derived from after keep(). Threads may ask at once: one
 /// of them makes the value, and the others wait for it.
 class DerivedValues {

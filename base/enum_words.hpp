@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, sizeof...(Words)> word_list(const Words&.
 template <class Enum>
 concept WordedEnum = std::is_enum_v<Enum> && !std::is_same_v<decltype(kWords<Enum>), const std::nullptr_t>;
 
-/// The word for a value; "unknown" for what is none.
+/// The word for a value; "unknown" for a number that is no value.
 template <WordedEnum Enum>
 constexpr std::string_view to_string(Enum value) {
   const auto place = static_cast<std::size_t>(value);

@@ -4,7 +4,7 @@
 
 namespace mpm {
 
-/// A limit that does not exist, and what no finite number is beyond.
+/// A limit that does not exist: no finite number lies beyond it.
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A number that is not known or has no meaning where it stands.

@@ -49,8 +49,8 @@ struct Row {
                RowAccess<Owner, double>, RowAccess<Owner, std::string>>
       access;
   RowUse use = RowUse::everywhere;
-  /// Minor version of archives from which on they have it; 0: all do. Owners out of earlier ones keep what
-  /// they are made with.
+  /// First minor version of archives that has it; 0: all have it. Owners that are read from an earlier one
+  /// keep their default.
   int since = 0;
   std::string coordinates = {};  ///< a variable with further coordinates, such as `time`; none when empty
 
@@ -141,8 +141,8 @@ Row<Owner> value_row(NumberText text, std::function<T(const Owner&)> get,
   return {std::move(text), {}, {}, std::move(access)};
 }
 
-/// One member, in the file as it is in memory but for its type. What a whole number cannot be, or has no word
-/// in an enumeration that has words, leaves it as it is.
+/// One member, in the file as it is in memory but for its type. A value that a whole number cannot take, or
+/// that has no word in an enumeration with words, leaves the member as it is.
 template <class T, class Owner, class Lens>
 Row<Owner> member_row(NumberText text, Lens lens) {
   return value_row<T, Owner>(

@@ -26,7 +26,7 @@ class Sha256 {
 
 /// The first 16 digits of the SHA-256, by which people compare contents.
 std::string digest_of(std::string_view content);
-/// Of a file that cannot be read: that of nothing.
+/// Of a file; if it cannot be read, that of an empty text.
 std::string digest_of_file(const std::filesystem::path& path);
 
 }  // namespace mpm

@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// When an analyser, such as a gas chromatograph, speaks: it takes a sample of the stream every `period`
-/// samples of the controller, says what it found `delay` samples later, and its output is held until the next
+/// The timing of an analyser, such as a gas chromatograph: it takes a sample of the stream every `period`
+/// samples of the controller, shows the result `delay` samples later, and its output is held until the next
 /// analysis. With period 1 and delay 0 a CV is measured at every sample.
 struct AnalyserTiming {
   int period = 1;  ///< samples, >= 1
@@ -58,7 +58,7 @@ AnalyserTiming with_first_of(AnalyserTiming timing, const Eigen::Ref<const Eigen
 Eigen::MatrixXd as_shown(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd signals,
                          const Eigen::Ref<const Eigen::VectorXd>& rest);
 
-/// What is known in the end of signals of which analysers have shown `shown` (n x N): each analysis from the
+/// What is known at the end of signals that analysers have shown as `shown` (n x N): each analysis from the
 /// sample at which it was taken on, held to the next one. Before the first one it is what was shown at the
 /// start.
 Eigen::MatrixXd as_taken(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd shown);

@@ -41,7 +41,7 @@ struct ActiveSetOptions {
 /// once more in other units (EquilibratedProgram).
 ///
 /// `infeasible` is returned only with a certificate, see `certificate`. `iteration_limit` and
-/// `numerical_error` say honestly that there is no answer; an unbounded problem ends so.
+/// `numerical_error` mean that there is no answer; an unbounded problem ends so.
 ///
 /// Among several minimisers (H semidefinite) the answer is the one nearest to the origin in the directions
 /// that H leaves open, provided that the proximal weight is small against the costs (Mangasarian & Meyer,

@@ -15,9 +15,9 @@ class IpoptSolver;
 bool is_certified(const QpResult& result);
 
 /// The active-set method, and Ipopt for the problems to which it gives no certified answer; these are marked
-/// `from_ipopt`. It is Ipopt that makes the rule of IpoptSolver hold here too: one thread of a process
-/// only. Where Ipopt cannot run, such problems are counted for somebody else to solve: up to the first of
-/// them the answers are the same, bit for bit.
+/// `from_ipopt`. Because of Ipopt, the rule of IpoptSolver holds here too: one thread of a process only.
+/// Where Ipopt cannot run, such problems are counted, so that another process can solve them: up to the first
+/// of them the answers are the same, bit for bit.
 class CertifiedSolver final : public QpSolver {
  public:
   /// Asks Ipopt, or adds 1 to `left_to_others`, which must outlive it, for each problem that needs it. Throws

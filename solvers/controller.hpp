@@ -30,8 +30,8 @@ struct ControlMove {
   int fallbacks = 0;          ///< problems whose answer is Ipopt's, see CertifiedSolver
 };
 
-/// Whoever decides on the MVs of a loop: the Mpc of this program, or somebody else's. y(k) and d(k) are
-/// measured just before u(k) acts; d(k) acts from sample k on, as u(k) does.
+/// What decides on the MVs of a loop: the Mpc of this program, or a controller from outside. y(k) and d(k)
+/// are measured just before u(k) acts; d(k) acts from sample k on, as u(k) does.
 ///
 /// | symbol | meaning                     | shape |
 /// |--------|-----------------------------|-------|
@@ -77,9 +77,9 @@ class Controller {
   /// arguments alone.
   virtual Eigen::VectorXd nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) = 0;
 
-  /// The problems of the last step, for those who solve them again; a controller has none that does not pose
-  /// them here, and there is no target problem without targets. When the targets have no answer, the moves
-  /// are those of an earlier step.
+  /// The problems of the last step, to be solved again. A controller that does not pose its problems here has
+  /// none, and without targets there is no target problem. When the targets have no answer, the moves are
+  /// those of an earlier step.
   virtual std::optional<SolvedQp> target_problem() const { return std::nullopt; }
   virtual std::optional<SolvedQp> move_problem() const { return std::nullopt; }
 

@@ -10,10 +10,10 @@
 
 namespace mpm {
 
-/// The model of a controller that learns of some MDs late. A value d(k) that is new was measured `delay`
-/// samples before: it was that from sample k - delay on, and the model has had another one since then. The
-/// model is run again over these samples, so that y_sim(k) is the one of all that is known at sample k, and
-/// the outputs that the disturbance has moved already are no output bias.
+/// The model of a controller that learns of some MDs late. A new value d(k) was measured `delay` samples
+/// before: the MD has had it since sample k - delay, while the model had another one. The model is run again
+/// over these samples, so that y_sim(k) follows from all that is known at sample k, and what the disturbance
+/// has already done to the outputs is no output bias.
 class LateMeasurements {
  public:
   /// One timing an MD; `model` has the MDs after the MVs.
@@ -24,8 +24,8 @@ class LateMeasurements {
   void reset(const LinearPlant& model, const Eigen::Ref<const Eigen::VectorXd>& input);
   /// The model is advanced with `input` to the next sample.
   void advance(const Eigen::Ref<const Eigen::VectorXd>& input);
-  /// Puts `model` at the state of this sample where the MDs `d` (nd) that are told now say something new of
-  /// those before, and says whether they do. Allocates nothing.
+  /// Where the MDs `d` (nd) that become known now change those of earlier samples, puts `model` at the
+  /// corrected state of this sample. Returns whether they do. Allocates nothing.
   bool correct(const Eigen::Ref<const Eigen::VectorXd>& d, LinearPlant& model);
   /// The output of the corrected model at the sample before, ny.
   const Eigen::VectorXd& output_before() const { return output_before_; }

@@ -26,12 +26,11 @@ namespace mpm {
 /// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction. Of a CV
 ///    of an analyser y_sim is that at the sample at which the analysis was taken; MDs that are measured late
 ///    act in it from when they were measured (LateMeasurements). The bias of a CV that integrates may have a
-///    ramp, r(k) = r(k-1) + alpha (b(k) - b(k-1) - r(k-1)): what is not known flows into a level all the
+///    ramp, r(k) = r(k-1) + alpha (b(k) - b(k-1) - r(k-1)), because unknown flows act on a level all the
 ///    time. Its prediction l samples ahead has b(k) + l r(k).
 /// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19). A CV that integrates is at a steady
-/// state
-///    where its rate is 0, K_d and K are those of the rate, and r stands for b; a rate counts by what it
-///    makes of the CV over the prediction horizon.
+///    state where its rate is 0, K_d and K are those of the rate, and r stands for b; a rate counts by what
+///    it makes of the CV over the prediction horizon.
 /// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20). Setpoints are
 ///    those of this sample, held over the horizon: the controller does not know their changes beforehand.
 ///

@@ -77,8 +77,8 @@ struct MpcOptions {
   Eigen::VectorXd slack_cost = {};  ///< linear cost of a slack; empty or 0: none
   /// Time constant with which the CV is asked to approach its setpoint from where it is; empty or 0: at once.
   Eigen::VectorXd reference_time = {};
-  /// Of CVs that integrate, 0 to 1: the share of what the output bias moves from one sample to the next that
-  /// counts as its ramp, with which the prediction goes on (Mpc). Empty or 0: the bias is a constant.
+  /// Of CVs that integrate, 0 to 1: the share of the change of the output bias from one sample to the next
+  /// that counts as its ramp, with which the prediction continues (Mpc). Empty or 0: the bias is a constant.
   Eigen::VectorXd bias_ramp = {};
   /// Of CVs that an analyser measures: the output-bias feedback compares an analysis with the model at the
   /// sample at which it was taken. Empty: none.

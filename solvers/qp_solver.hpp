@@ -16,17 +16,17 @@ inline constexpr double kSolvedKktResidual = 1e-7;
 /// rounding is more than that. The active-set method reaches 1e-10 where the problem allows it.
 inline constexpr double kCertifiedKktResidual = 1e-9;
 
-/// By so much, relative to the largest number of x and A x, an answer that keeps its limits as well as
-/// doubles can may miss one: 32 times the unit roundoff. Rows of a loop that had run away, of 20 terms,
-/// missed theirs by 1 to 4 units in the last place of the limit.
+/// How far an answer may miss a limit through rounding alone, relative to the largest number of x and A x: 32
+/// times the unit roundoff. In a loop that had run away, rows of 20 terms missed their limits by 1 to 4 units
+/// in the last place.
 inline constexpr double kAnswerRounding = 0x1p-47;
 
 /// Solves a sequence of quadratic programs that share one structure, each warm-started from the one before.
 ///
 /// The public `solve` checks its input and certifies the answer: one with a KKT residual above
 /// kSolvedKktResidual is a `numerical_error`, whatever the back end says. `certified` is one with a residual
-/// of at most kCertifiedKktResidual or of kAnswerRounding times the largest number of x and A x: doubles
-/// bring an answer of 1e7, as a loop has that runs away, no nearer to its limits. Back ends implement
+/// of at most kCertifiedKktResidual or of kAnswerRounding times the largest number of x and A x: with
+/// doubles, an answer of 1e7, as in a loop that runs away, comes no nearer to its limits. Back ends implement
 /// `do_solve` only. A solver belongs to one controller and is not shared between threads.
 class QpSolver {
  public:
@@ -46,7 +46,7 @@ class QpSolver {
 
   /// Processor seconds that Ipopt may take for one problem from now on, all of its runs together; a problem
   /// that needs more has the status `time_limit`. Infinite at first. The active-set method has a limit of its
-  /// steps and takes no notice.
+  /// steps and ignores this one.
   void set_time_limit(double seconds) { time_limit_ = seconds; }
 
   /// Forgets the warm start, so that the next answer depends on its problem alone.

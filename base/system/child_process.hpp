@@ -54,8 +54,8 @@ class ChildProcess {
   /// The next line of the program that is not empty, without its end. Throws the same.
   std::string receive(Deadline deadline);
 
-  /// Is it a program of this process, not of the one that this was forked from? Such a program is left
-  /// alone, also by the destructor, and not to be asked.
+  /// Was the program started by this process, not by the one that this was forked from? A program of another
+  /// process is left alone, also by the destructor, and must not be asked.
   bool is_ours() const;
 
   /// Processor time that the program has used, in seconds.

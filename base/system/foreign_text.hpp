@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// One line of printable ASCII out of whatever somebody else's program wrote, at most `most` bytes and "..."
-/// of it: it goes into messages and archives.
+/// One line of printable ASCII from what an outside program wrote, cut to `most` bytes and "...", for
+/// messages and archives.
 std::string foreign_text(std::string_view text, std::size_t most);
 
 }  // namespace mpm

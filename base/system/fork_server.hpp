@@ -10,16 +10,17 @@
 namespace mpm {
 
 /// A process that makes processes, so that threads can have some: a fork copies the memory of a process as it
-/// is, with the locks that its other threads hold at that moment, which nobody opens in the copy. This one is
-/// forked once, while no other thread is at work, has one thread itself, and forks whenever it is asked to.
+/// is, with the locks that its other threads hold at that moment, which nobody releases in the copy. This one
+/// is forked once, while no other thread is at work, has one thread itself, and forks whenever it is asked
+/// to.
 ///
 /// Each service has two processes, both of its making: one that does the work, and one that waits for it,
 /// ends it when it takes too long or its user is gone, and says how it ended (ForkedService). Whatever the
-/// first one has started, in whatever session, ends with its service: the other one is its reaper, and the
-/// server that of one that was killed.
+/// first one has started, in whatever session, ends with its service: the second one reaps it or, if the
+/// second one was killed, the server does.
 class ForkServer {
  public:
-  /// What a service does that is made with this setting; called in its process.
+  /// What a service that is made with this setting does; called in its process.
   using MakeService = std::function<ForkedService::Serve(const std::vector<double>& setting)>;
 
   /// Forks: to be called before threads are at work. Errors: std::system_error when no process can be made.
@@ -48,7 +49,7 @@ class ServedProcess {
   ~ServedProcess();
 
   /// The answer. Errors: as ForkedService::ask(); SurroundingsFailure also when the process that waits for
-  /// the service has ended, in which no code of others runs.
+  /// the service has ended, because no code of others runs in it.
   std::vector<double> ask(const std::vector<double>& request);
 
  private:

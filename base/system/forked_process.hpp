@@ -22,8 +22,8 @@ class ForeignFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Makes this copy of a process one that has nothing of it but its memory: signals as a program finds them,
-/// SIGINT left to the parent, no core, standard streams that lead nowhere, and of all files `socket` alone.
+/// Leaves this copy of a process nothing of its parent but the memory: signals have their defaults, SIGINT is
+/// left to the parent, no core is written, standard streams lead nowhere, and `socket` is the only open file.
 /// Returns the number that the socket has from now on.
 int leave_parent(int socket);
 
@@ -38,8 +38,8 @@ struct ForkedProcess {
 };
 
 /// Forks a process off, which has left its parent when `work` begins with the socket to the parent, and ends
-/// with it. For a process without other threads: a process that another one forks meanwhile would hold an
-/// end of this one's socket, and its end would not show. Throws std::system_error.
+/// with it. For a process without other threads: a process that another thread forks meanwhile would hold an
+/// end of this socket, so that nobody would see it close. Throws std::system_error.
 ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work);
 
 /// Kills the children of this process and theirs, whatever session or group they are in: what a child leaves

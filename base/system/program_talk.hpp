@@ -26,7 +26,7 @@ class ProgramTalk {
   /// is no answer. After any of them the talk is out of step and over.
   nlohmann::ordered_json ask(nlohmann::ordered_json message);
 
-  /// Is it a talk of this process? Not in one that was forked off: there it cannot be gone on with.
+  /// Does the talk belong to this process? A process that was forked off cannot continue it.
   bool is_ours() const { return child_.is_ours(); }
 
  private:

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-// Which programs of somebody else this process may start: none, but those that the user has named in a file
-// of one's own. A study that is read from an archive or from the part of a campaign names others' programs,
-// and to open a file must start nothing.
+// Which outside programs this process may start: only those that the user has named in a file. A study that
+// is read from an archive or from the part of a campaign may name programs of others, and opening a file must
+// start nothing.
 
 namespace mpm {
 
-/// A program that is to be started and that nobody has allowed. No InputError, so that no loop counts it as
-/// an outcome of its own: it ends the command.
+/// A program was to be started that nobody has allowed. It is no InputError, so that no loop counts it as its
+/// outcome: it ends the command.
 class UntrustedProgram : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

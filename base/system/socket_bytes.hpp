@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstddef>
 
-// Bytes between a process and one that it has forked, over a stream socket: all of them or none that count.
+// Bytes between a process and one that it has forked, over a stream socket: all of them, or none counts.
 
 namespace mpm {
 

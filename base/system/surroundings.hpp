@@ -9,9 +9,9 @@
 
 namespace mpm {
 
-/// What was to be asked or run could not be, through no doing of its own: somebody killed its process, or
-/// there was no process for it. Nobody keeps that as an outcome. A run tries once more, and then stops
-/// without it (run_missing()).
+/// Something could not be asked or run, through no fault of its own: somebody killed its process, or there
+/// was no process for it. This is never kept as an outcome. A run tries once more, and then stops without it
+/// (run_missing()).
 class SurroundingsFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -27,8 +27,8 @@ std::string what_happened(const std::exception& error);
 /// How a process ended.
 struct ProcessEnd {
   std::string text;  ///< "ended by signal 11 (Segmentation fault)" or "ended with code 3"
-  /// By SIGHUP, SIGINT, SIGKILL or SIGTERM, which no program gets for an error of its own, also as a shell
-  /// reports them for what it ran: as the code 128 + signal.
+  /// By SIGHUP, SIGINT, SIGKILL or SIGTERM, which no program gets for an error of its own, or with the code
+  /// 128 + signal by which a shell reports them.
   bool from_outside;
 };
 /// By its status, as waitpid() gives it.

@@ -9,9 +9,9 @@ namespace mpm {
 /// An empty folder "mpmbench-temporary-XXXXXX" among the temporary files (TMPDIR), which goes with this
 /// object.
 ///
-/// Of a process that was killed it stays, and goes when the same user makes the next one: as long as its
-/// process lives, or one that was forked off and has its open files, the folder is locked (flock()), and a
-/// folder of this name that nobody has locked is nobody's.
+/// The folder of a process that was killed stays until the same user makes the next one. A folder is locked
+/// (flock()) as long as its process lives, or one that was forked off and has its open files; a folder of
+/// this name that is not locked is removed.
 class TemporaryFolder {
  public:
   /// Errors: std::system_error when there is none to be had.

@@ -19,9 +19,9 @@ struct RunningProgram {
   std::string context = {};  ///< that it was told last; empty: none
 };
 
-/// The processes of one program that wait to be asked: starting one may take as long as a hundred answers, so
-/// that it outlives whoever asks it and waits for the next one of the same process. All calls may come from
-/// any thread.
+/// The processes of one program that wait to be asked. Starting one may take as long as a hundred answers, so
+/// a process outlives the caller that asks it and waits for the next caller in this process. All calls may
+/// come from any thread.
 class WaitingPrograms {
  public:
   /// As ProgramTalk; nothing is started.
@@ -30,11 +30,11 @@ class WaitingPrograms {
   const std::vector<std::string>& command() const { return command_; }
   double time_limit() const { return time_limit_; }
 
-  /// One that waits, which was told this context last if there is such a one, or a new one. Those of the
-  /// process that this one was forked from are none of its own. Errors: as ProgramTalk.
+  /// A process that waits, if possible one that was told this context last; otherwise a new one. Those of the
+  /// process that this one was forked from do not count. Errors: as ProgramTalk.
   std::unique_ptr<RunningProgram> take(const std::string& context);
   std::unique_ptr<RunningProgram> take_new() const;
-  /// One that is in step: nothing has gone wrong with it.
+  /// Takes back one that is in step: nothing has gone wrong with it.
   void give_back(std::unique_ptr<RunningProgram> program);
   /// Ends those that wait: their surroundings have failed.
   void end_all();

@@ -11,12 +11,12 @@
 
 namespace mpm {
 
-/// A linear plant that goes over from one transfer matrix to another while it runs: the part a(k) of the way,
+/// A linear plant that changes from one transfer matrix to another while it runs: the part a(k) of the way,
 /// from 0 to 1. A channel that changes from G to H, with H = f H1 and H1 of the static gain of G, is
 ///
 ///   y(k) = (1 - a(k)) G w + a(k) H1 w,   w(k) = (1 + (f - 1) a(k)) u(k).
 ///
-/// The gain goes over at the input and the dynamics at the output, so that a plant at rest stays where it is
+/// The gain changes at the input and the dynamics at the output, so that a plant at rest stays where it is
 /// when its time constant or its dead time changes, and answers through its own lag when its gain does. Where
 /// one of the two has no static gain or the gain 0, f = 1.
 class ChangingPlant final : public Plant {

@@ -17,8 +17,8 @@ struct StepResponseFit {
   double largest_error = kNaN;  ///< of the response, as a share of its largest value; 0 for no response
 };
 
-/// What a fit may leave, as a share of the largest value of the response, without a reason for a richer form:
-/// of a plant, which bends more, and of coefficients, which are rounded.
+/// Error of a fit that does not call for a richer form, as a share of the largest value of the response: for
+/// a plant, which may be nonlinear, and for coefficients, which are rounded.
 inline constexpr double kNegligibleOfPlant = 1e-3, kNegligibleOfCoefficients = 1e-6;
 
 /// The simplest of these forms that describes the unit step response `response` (values 1, 2, ... sample

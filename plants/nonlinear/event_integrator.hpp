@@ -39,7 +39,7 @@ class EventSystem {
 /// or indicators than kMostStates and kMostIndicators.
 class EventIntegrator {
  public:
-  /// The Jacobian is dense, and twice there: 5000 states are 400 MB. The system says its own numbers.
+  /// The Jacobian is dense and kept twice: 5000 states take 400 MB. The system itself reports its sizes.
   static constexpr std::size_t kMostStates = 5000, kMostIndicators = 100'000;
   /// Of a local error, relative to the state and to its nominal value.
   static constexpr double kTolerance = 1e-9;

@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// The functions of an instance of an FMU in this process, whatever the version of its interface. There is no
-/// end to it but that of the process.
+/// The functions of an instance of an FMU in this process, whatever the version of its interface. It ends
+/// only with the process.
 ///
 /// Errors of all members: ForeignFailure that names the function of the interface, its status and the last
 /// message of the FMU.

@@ -20,21 +20,21 @@ struct FmuSteps {
   double length = 1.0;
   int count = 1;  ///< in a sample
 
-  /// As many equal ones as make each at most `longest` long; 0: one.
+  /// The fewest equal steps of at most `longest` each; 0: one step.
   static FmuSteps of_sample(double sample, double longest);
 };
 
 /// The instance of an FMU in this process. Its code is somebody else's: it may crash, and it may leave
-/// behind what the next instance would find, so that a ForkedService is the place for it. There is no end to
-/// it but that of the process.
+/// behind what the next instance would find, so that a ForkedService is the place for it. It ends only with
+/// the process.
 ///
 /// Errors of all members: ForeignFailure that names the function of the interface, its status and the last
 /// message of the FMU.
 class FmuInstance {
  public:
   /// Instantiates the FMU and initialises it with these parameters and inputs, at time 0, for an experiment
-  /// that ends after kMostSamples samples: an FMU may end where its own default experiment does if nobody
-  /// tells it.
+  /// that ends after kMostSamples samples: without being told, an FMU may end where its own default
+  /// experiment does.
   FmuInstance(const FmuPackage& package, const FmuReferences& references, const Eigen::VectorXd& parameters,
               const Eigen::VectorXd& input, FmuSteps steps);
   FmuInstance(const FmuInstance&) = delete;

@@ -65,7 +65,7 @@ enum class AssessmentSetpoints : std::int8_t {
   optimizer = 1,   ///< the steady state that the target optimizer computes (2.32), as chapter 2 does it
 };
 
-/// Which model the methods take the plant for where it has no fault.
+/// What the methods assume of the plant without a fault.
 enum class AssessmentModel : std::int8_t {
   automatic = 0,  ///< benchmark where the model is not exact, otherwise nominal (model_assumption())
   nominal = 1,    ///< that of the controller, exactly

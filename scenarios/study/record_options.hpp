@@ -16,8 +16,8 @@ enum class GapFill {
   linear,  ///< the straight line between the values on both sides of the gap
 };
 
-/// What the historian makes of the measured CVs that it keeps (historian.hpp). As it is: every sample, as it
-/// was measured. The sizes are in standard deviations of the measurement noise of the CV
+/// What the historian makes of the measured CVs that it keeps (historian.hpp). By default: every sample, as
+/// it was measured. The sizes are in standard deviations of the measurement noise of the CV
 /// (SimulationOptions::noise_standard_deviation), to which ranges and resolutions of transmitters are chosen.
 struct RecordOptions {
   static constexpr int kMostCandidates = 9;  ///< each has a stream of its own

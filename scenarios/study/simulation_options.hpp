@@ -58,7 +58,7 @@ enum class NoiseDistribution {
   laplace,
 };
 
-/// What the measurement noise is beside its standard deviation.
+/// Distribution, colour and size of the measurement noise.
 struct NoiseOptions {
   NoiseDistribution distribution = NoiseDistribution::normal;
   double autocorrelation = 0.0;  ///< phi of e(k) = phi e(k-1) + sqrt(1 - phi^2) w(k): the variance stays
