@@ -18,11 +18,11 @@ struct CacheUsage {
   std::uint64_t bytes = 0;
 };
 
-/// A folder of finished work that any run may take up: files in the format of shards, each under the digest
-/// of all that decides on its content, which stands in it as well. A file that is damaged, cut off or of
-/// somebody else is as none. Files appear whole, and are in memory while they are used, so that any number of
-/// processes may use the folder at once. Where it grows beyond its limit, the files go that nobody has used
-/// for longest.
+/// A folder of finished work that any run may take up: files in the format of shards, each named by the
+/// digest of everything that decides its content, which the file contains as well. A file that is damaged,
+/// cut off or written by another program counts as none. Files appear whole, and are in memory while they are
+/// used, so that any number of processes may use the folder at once. Beyond its limit, the files that have
+/// not been used for longest are removed.
 class CacheFolder {
  public:
   CacheFolder(std::filesystem::path path, std::uint64_t limit) : path_(std::move(path)), limit_(limit) {}
@@ -30,10 +30,10 @@ class CacheFolder {
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t limit() const { return limit_; }  ///< bytes
 
-  /// The file of this identity, which counts as used now; none: there is none that is whole.
+  /// The file of this identity, which counts as used now; none: there is no whole one.
   std::optional<ShardContent> read(const ShardIdentity& identity) const;
-  /// Puts `content` in the place of it, and makes room. Where that cannot be done nothing is kept from then
-  /// on, and the first time the reason is told.
+  /// Puts `content` in its place, and makes room. Where that cannot be done, nothing is kept from then
+  /// on. Returns the reason the first time.
   std::optional<std::string> write(ShardBytes& content, const ShardIdentity& identity) const;
 
   CacheUsage usage() const;
@@ -50,8 +50,8 @@ class CacheFolder {
 };
 
 /// The cache of the user: the folder MPMBENCH_CACHE, otherwise mpmbench in XDG_CACHE_HOME, otherwise in
-/// ~/.cache. None: MPMBENCH_CACHE is "off", or nobody is at home. Its limit is MPMBENCH_CACHE_MB megabytes.
-/// Throws InputError for a limit that is none.
+/// ~/.cache. None: MPMBENCH_CACHE is "off", or there is no home folder. Its limit is MPMBENCH_CACHE_MB
+/// megabytes. Throws InputError for a limit that is none.
 std::shared_ptr<const CacheFolder> user_cache();
 
 }  // namespace mpm

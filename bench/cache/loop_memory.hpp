@@ -22,7 +22,7 @@ namespace mpm {
 struct KnownLoop {
   /// With its loop where its status is ok, and with the answers that are known.
   ExperimentRecord record;
-  std::vector<std::string> unheard = {};  ///< methods whose answers are not
+  std::vector<std::string> unheard = {};  ///< methods whose answers are not known
   bool has_truth = true;                  ///< of an experiment that this program has run as a whole
   bool by_process = false;                ///< a worker process ran it, as the methods are to be asked by one
 };
@@ -30,8 +30,8 @@ struct KnownLoop {
 /// The loops of one campaign that an earlier run has left in a cache, each with its truth, and what methods
 /// of this program have said of them: what decides on them is the program with the libraries and the
 /// processor that it runs on, text and seed of the study, the solver, and whether threads or worker processes
-/// run. Of programs of others nothing is kept, since nobody knows what their answers depend on, and nothing
-/// that has failed, since that may be a matter of time.
+/// run. Answers of outside programs are not kept, since they may depend on anything. Nor is anything that has
+/// failed, since that may be a matter of time.
 class LoopMemory {
  public:
   /// Whether the loops of this campaign may be kept: some have a plant or a controller of somebody else, are
@@ -56,7 +56,7 @@ class LoopMemory {
   /// Takes such bytes. One call at a time; find() may run beside it, and does not find them.
   void take(std::int64_t key, std::string bytes);
 
-  /// Leaves what is new in the cache. The reason why that cannot be done, the first time.
+  /// Leaves what is new in the cache. Returns, the first time, the reason why that cannot be done.
   std::optional<std::string> write();
 
  private:

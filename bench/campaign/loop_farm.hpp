@@ -53,9 +53,9 @@ struct LoopWork {
 };
 
 /// Runs those of the loops that the store lacks, in this order, and keeps them in it: the one place where
-/// loops run. Threads are those of OpenMP, with a dynamic schedule; worker processes are for what bears no
-/// threads or may crash, and are forked before the first thread starts. The store has the same bytes however
-/// many run at once, and in whatever order they are done.
+/// loops run. Threads are those of OpenMP, with a dynamic schedule; worker processes are for what must not
+/// run in threads or may crash, and are forked before the first thread starts. The store has the same bytes
+/// however many run at once, and in whatever order they are done.
 ///
 /// A loop whose surroundings fail (is_of_surroundings()), such as a worker process that is killed from
 /// outside, is run once more by a new thread or process. If they fail again, nothing is kept of it, and the

@@ -20,8 +20,8 @@ struct LoopPlace {
   bool of_calibration = false;
 };
 
-/// Loops of a campaign that is done, taken up once more: experiments as its records have them, calibration
-/// loops run again. All that is referred to must outlive run_revisited().
+/// Loops of a finished campaign that are taken up once more: experiments as its records have them,
+/// calibration loops run again. All that is referred to must outlive run_revisited().
 struct RevisitedLoops {
   const Campaign& campaign;
   const Study& study;                ///< of the experiments
@@ -42,8 +42,8 @@ struct RevisitedLoops {
 };
 
 /// Runs what the store lacks of these keys, as run_missing(): in threads by the active-set method, and in
-/// worker processes where a loop has to be simulated by Ipopt, whose linear solver does not bear two threads.
-/// The store has the same bytes for any number of jobs.
+/// worker processes where a loop has to be simulated by Ipopt, whose linear solver must not run in two
+/// threads. The store has the same bytes for any number of jobs.
 void run_revisited(ShardStore& store, const std::vector<std::int64_t>& keys, const RevisitedLoops& loops,
                    int jobs, const CampaignHooks& hooks);
 

@@ -29,7 +29,7 @@ void require_archives(const std::vector<IntendedStudy>& studies, const std::file
 using TakeRun = std::function<void(std::size_t place, KeptRun run)>;
 
 /// Runs them, each unless its archive is there, and shows how far all of them have come. A study that cannot
-/// be run is a warning. Throws std::runtime_error, which says how to go on, where it is stopped; other
+/// be run is a warning. Throws std::runtime_error, which says how to resume, where it is stopped; other
 /// errors: as run_unless_kept().
 void run_series(const std::vector<IntendedStudy>& studies, const RunOptions& options, Progress& progress,
                 const std::string& output, const std::string& command_line, const TakeRun& take);

@@ -16,7 +16,7 @@ void print_result(std::string_view text);
 void print_note(std::string_view text);
 
 /// The end of a message about work that was stopped: what is done is kept `where` ("in FOLDER"), and
-/// `command` goes on with it.
+/// `command` resumes it.
 std::string how_to_go_on(std::string_view where, std::string_view command);
 
 /// A command line without `--discard`, which would delete what it is to go on with.

@@ -36,12 +36,11 @@ class StopSignals {
   struct sigaction alarm_ {};
 };
 
-/// Whoever starts this program to be served by it, and is of no use without its end, says so in the variable
-/// MPMBENCH_SERVES of the environment: "PID PID-NAMESPACE", the second one as /proc/PID/ns/pid has it. From
-/// this call on the end of that process is a request to stop, too, and this one ends 1.7 s after it as above,
-/// whether a StopSignals lives or not. A thread waits for it, which holds no lock when others fork. Nothing
-/// without the variable, and with that of another namespace. Errors: std::system_error when there is no
-/// thread.
+/// A process that starts this program for itself alone says so in the variable MPMBENCH_SERVES of the
+/// environment: "PID PID-NAMESPACE", the second one as /proc/PID/ns/pid has it. From this call on the end of
+/// that process is a request to stop, too, and this one ends 1.7 s after it as above, whether a StopSignals
+/// lives or not. A thread waits for it, which holds no lock when others fork. Does nothing without the
+/// variable, or with that of another namespace. Errors: std::system_error when there is no thread.
 void stop_with_served_process();
 
 }  // namespace mpm

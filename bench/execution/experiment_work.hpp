@@ -16,7 +16,7 @@ class ExperimentWork {
  public:
   /// Experiments of `study`; the methods have learnt from the basis case of `basis_study`. All but `factory`
   /// must outlive it, which makes the solvers of the controllers: that of `options.solver`, or the part of it
-  /// that bears threads.
+  /// that may run in threads.
   ExperimentWork(const Study& study, const Study& basis_study, const BasisCase& basis,
                  const RunOptions& options, const QpSolverFactory& factory);
 

@@ -65,7 +65,7 @@ bool has_foreign_part(const Study& study);
 
 /// Whether loops run in threads, or in worker processes: these also where somebody else simulates the plant
 /// or is the controller, since such loops wait for other processes, which are made without other threads at
-/// work. Throws InputError for threads that the solver does not bear.
+/// work. Throws InputError for threads where the solver must not run in threads.
 bool runs_in_threads(const Study& study, const RunOptions& options);
 
 /// The share of the steps that is audited: the other solvers have nothing to be audited by, and a controller

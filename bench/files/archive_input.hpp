@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// An archive that was to be read and cannot be: wrong input, where one that cannot be written is a run that
-/// cannot be finished.
+/// An archive cannot be read: wrong input, whereas one that cannot be written is a run that cannot be
+/// finished.
 class BadArchive : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

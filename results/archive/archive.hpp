@@ -26,8 +26,8 @@ void write_archive(const std::filesystem::path& path, const Campaign& campaign,
 /// archive, is not whole, is damaged, or has another major version.
 Campaign read_archive(const std::filesystem::path& path);
 
-/// The same, for what has no need of all records at once: but for a study that names its scenarios they stay
-/// in the file (Campaign::streamed). What is wrong in a single one is thrown when it is read.
+/// The same, for callers that do not need all records at once: except in a study that names its scenarios,
+/// they stay in the file (Campaign::streamed). What is wrong in a single one is thrown when it is read.
 Campaign stream_archive(const std::filesystem::path& path);
 
 }  // namespace mpm

@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// What decides on the answers of two campaigns and is another thing in each: the keys of their studies
+/// What decides the answers of two campaigns and differs between them: the keys of their studies
 /// (study_differences()), and of each method from outside that both have the keys of its file, by the names
 /// that these have there:
 ///

@@ -10,9 +10,8 @@ namespace mpm {
 /// The number of the first error of the system, 0 before.
 using DiskError = std::shared_ptr<int>;
 
-/// A file on the disk for somebody who must hear of no error of what is written, nor of closing it: what
-/// cannot be written is lost, and the number of the first error is kept where the maker of the file looks for
-/// it.
+/// A file on the disk that hides errors of writing and closing from its user: what cannot be written is lost,
+/// and the number of the first error is kept where the maker of the file looks for it.
 class DiskFile {
  public:
   /// The file at `path`, which must be there: to be written, it is emptied. `error` outlives the file.
@@ -27,7 +26,8 @@ class DiskFile {
   /// Bytes; 0 of a file that cannot be looked at.
   std::uint64_t size() const;
 
-  /// Fills `bytes` from the place `begin` on; zeros beyond the end, and where an error was: then it is false.
+  /// Fills `bytes` from the place `begin` on; with zeros beyond the end, and after an error, when it returns
+  /// false.
   bool read(std::uint64_t begin, std::span<char> bytes);
   /// Does nothing once there was an error.
   void write(std::uint64_t begin, std::span<const char> bytes);

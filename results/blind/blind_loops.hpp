@@ -42,7 +42,7 @@ std::vector<std::string> row_names(const Study& study, const LoopSignal& signal)
 
 /// Which loops of the campaign are the loops 0, 1, 2, ... of its blind export: records with status ok and, if
 /// asked for, all calibration loops, in a shuffle by the stream `blind_order` of the master seed (Fisher and
-/// Yates), so that the archive is the key. Whether a calibration loop ran to its end no archive tells.
+/// Yates), so that the archive is the key. No archive tells whether a calibration loop ran to its end.
 std::vector<BlindLoop> blind_order(const Campaign& campaign, bool with_calibration);
 
 /// SHA-256 of what makes the loops what they are: study, seed, solver, indices and Ivar_basis of the records

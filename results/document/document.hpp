@@ -90,7 +90,7 @@ struct Cell {
   bool low_is_good = false;  ///< another colour
 };
 
-/// Who is told something. full: a page, and a text that is asked for in full.
+/// Where something is shown. full: on a page, and in a text that is asked for in full.
 enum class Shown { everywhere, page, text, full };
 
 /// Cells in rows under named columns. A text has the columns that fit side by side, and the others below.
@@ -175,7 +175,7 @@ struct Section {
   void say(std::string words, Paragraph::Kind kind = Paragraph::Kind::plain) {
     content.emplace_back(Paragraph{std::move(words), kind});
   }
-  /// In place of a content for which there are no data: one sentence of why.
+  /// In place of a content for which there are no data: one sentence that says why.
   void leave_out(const std::string& why);
 };
 

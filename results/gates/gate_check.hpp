@@ -20,9 +20,9 @@ struct BaselineChanges {
   std::string name;   ///< in the names of gates: "located", "METHOD.located"
   std::string title;  ///< for people: "source recognised"
   JudgementChanges changes;
-  /// McNemarTest::p_worse, corrected by Holm for the questions of which some verdict changed. One of which
-  /// none did is no test that could fail (Tarone 1990, "A modified Bonferroni method for discrete data",
-  /// Biometrics 46, 515-522).
+  /// McNemarTest::p_worse, corrected by Holm for the questions on which some verdict changed. A question on
+  /// which none did cannot fail, and does not count (Tarone 1990, "A modified Bonferroni method for discrete
+  /// data", Biometrics 46, 515-522).
   double p_worse = 1.0;
 
   bool changed() const { return !changes.lost.empty() || !changes.gained.empty(); }

@@ -12,9 +12,8 @@ namespace mpm {
 /// The records of the plant of `study` in a CSV text, as its [data] says (docs/own_records.md):
 ///
 /// 1. Columns: that of the tag, or of the variable's name, also as `mpmbench export` writes it ("y.xD").
-/// 2. Cells: numbers with the decimal sign of the file; whatever is no number is missing, and so is what has
-/// a
-///    quality that is not good. A value of the study is scale (cell - operating point).
+/// 2. Cells: numbers with the decimal sign of the file. What is no number, or has a quality that is not good,
+///    is missing. A value of the study is scale (cell - operating point).
 /// 3. Time stamps: ascending, or descending throughout. Without a column a row is a sample.
 /// 4. Samples: every sample time from the first stamp on. A CV is the mean over the half of a sample time on
 ///    either side, or the nearest value; an MV, an MD, a setpoint, a limit the last value up to half a sample

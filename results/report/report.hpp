@@ -14,7 +14,7 @@ namespace mpm {
 
 /// Why the page draws a loop.
 enum class LoopReason {
-  faulty,   ///< with a fault and a right verdict, in the middle of its like by what the fault costs
+  faulty,   ///< with a fault and a right verdict, the median of its kind by the cost of the fault
   healthy,  ///< the same without a fault
   wrong,    ///< with a wrong verdict, among the costliest
 };

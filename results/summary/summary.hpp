@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// How far a campaign is that is not finished.
+/// How far an unfinished campaign is.
 struct Unfinished {
   std::int64_t done = 0, experiments = 0;  ///< experiments that are there, and of the whole campaign
 };

@@ -21,7 +21,7 @@ std::string identification_words(const Study& study, const BasisCase& basis);
 /// By how much both solvers differ where one was asked after the other.
 std::string audit_words(const SummaryContent& parts, const CampaignInfo& info);
 
-/// The findings of people's interest, beside the reported ones where the study has some.
+/// The findings that matter to people, beside the reported ones where the study has some.
 Table findings_table(const Study& study, const StudyFindings& findings);
 
 /// I_MPM of the experiments with both faults, by the dominance of the mismatch.

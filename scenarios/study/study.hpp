@@ -62,10 +62,10 @@ struct ExperimentCounts {
 /// the CV follow its target only (docs/methods.md).
 enum class StepDirection { into_range, out_of_range, mean };
 
-/// Of which constraint set S0 is taken (3.3.3).
+/// The constraint set from which S0 is taken (3.3.3).
 enum class SensitivityStructure {
   operating_point,  ///< that of the basis case throughout
-  by_instant,       ///< that which is active at each sample, from the data
+  by_instant,       ///< the one that is active at each sample, from the data
 };
 
 /// What changes when the constraint set does (analysis/sensitivity/nominal_estimator).
@@ -95,7 +95,7 @@ struct S0PerturbationOptions {
   std::vector<double> multipliers;      ///< of time constant and damping in (6.24), ascending; empty: none
   std::vector<Eigen::Index> cvs;        ///< whose experiments are looked at; empty: all at an active limit
   double tolerance_lower = 0.75;        ///< multipliers within [tolerance_lower, tolerance_upper] are those
-  double tolerance_upper = 1.25;        ///< that the method should bear
+  double tolerance_upper = 1.25;        ///< that the method should tolerate
   std::vector<Eigen::Index> fixed_mvs;  ///< MVs held in a second control structure; empty: there is none
   std::vector<Eigen::Index> fixed_active_cvs;  ///< CVs at an active soft limit in it
 
@@ -117,7 +117,7 @@ enum class UnstableLoops : std::int8_t {
   exclude,  ///< they are left out, as infeasible ones are
 };
 
-/// How a study assures itself of its basis case.
+/// How a study checks its basis case.
 enum class SelfCheck {
   ivar,    ///< Ivar of the chain lies in the band for every CV: what the verdicts of the thesis need
   repeat,  ///< so does Ivar_basis (6.22) of the basis case with other noise: what the truth of impact needs
