@@ -48,7 +48,7 @@ fi
 archive="$root/out/chapter6.h5"
 page="$root/out/chapter6.html"
 mkdir -p "$root/out"
-"$mpmbench" run chapter6 -o "$archive" "$@" || hint $? "$archive" "./run.sh --resume goes on, and makes the report"
+"$mpmbench" run chapter6 -o "$archive" "$@" || hint $? "$archive" "./run.sh --resume resumes it and makes the report"
 if [[ -f $archive ]]; then
   "$mpmbench" report "$archive" -o "$page" >/dev/null
   echo "archive: $archive"

@@ -145,7 +145,7 @@ ExitCode assess(AssessArguments options, const std::string& command) {
                        .monitoring = monitoring},
                       qp_solver_factory(options.run.solver), kept_trials(options, progress, command));
   } catch (const Interrupted& error) {
-    throw std::runtime_error(progress.explain(error) + "; the same command goes on with the calibration run");
+    throw std::runtime_error(progress.explain(error) + "; the same command resumes the calibration run");
   }
   assessment.file = std::filesystem::path(options.data).filename().string();
   assessment.version = mpmbench_version();

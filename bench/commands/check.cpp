@@ -148,11 +148,11 @@ void add_check(CommandSet& commands) {
                    [options] { return check(*options); });
   add_path(app, "ARCHIVE", options->archive, "Archive, or the folder of a suite")->required();
   add_path(app, "--gates", options->gates, "Gate file (TOML)")->required();
-  add_path(app, "--suite", options->suite, "File of a suite of one's own (default: the shipped one)");
+  add_path(app, "--suite", options->suite, "File of your own suite (default: the shipped one)");
   add_path(app, "--junit", options->junit, "JUnit XML to write");
   add_path(app, "--markdown", options->markdown, "Summary to write, in Markdown");
   add_path(app, "--badge", options->badge, "Badge to write, the JSON of an endpoint of shields.io");
-  add_quiet(app, options->quiet, "No text but why the check fails");
+  add_quiet(app, options->quiet, "Print only why the check fails");
   add_json(app, options->json);
 }
 

@@ -160,7 +160,7 @@ void add_check_board(CommandSet& commands) {
       "check-board", "Are the results of a method complete and possible, and does a rerun agree with them?",
       [options] { return check_board(*options); });
   add_path(app, "BOARD", options->board, "SUITE.board.json that `suite` has written")->required();
-  add_path(app, "--suite", options->suite, "File of a suite of one's own (default: the shipped one)");
+  add_path(app, "--suite", options->suite, "File of your own suite (default: the shipped one)");
   add_path(app, "--rerun", options->rerun,
            "SUITE.board.json of the same methods under another seed (suite --seed N): its rates are compared "
            "with those of the file");

@@ -10,8 +10,8 @@ namespace mpm {
 /// place in one of the tasks below.
 using AddCommand = void(CommandSet& commands);
 
-AddCommand add_init;         // writes a study of a plant of one's own
-AddCommand add_init_method;  // writes a method of one's own, with one function to fill in
+AddCommand add_init;         // writes a study of your own plant
+AddCommand add_init_method;  // writes a method of your own, with one function to fill in
 AddCommand add_methods;      // the methods of assessment, and what one of them is told and says
 AddCommand add_run;          // runs a study and writes its archive
 AddCommand add_merge;        // makes the archive of parts that were run on several machines

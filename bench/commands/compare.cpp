@@ -201,7 +201,7 @@ std::unique_ptr<Comparison> open_comparison(const ComparisonTask& task, std::fil
   }
 }
 
-/// What `work` returns; stopped, it says how to go on.
+/// What `work` returns; stopped, it says how to resume.
 template <class Work>
 auto advised(const ComparisonTask& task, const Progress& progress, const Work& work) {
   try {

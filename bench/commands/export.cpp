@@ -74,7 +74,7 @@ ExitCode export_blind(const ExportArguments& options) {
   try {
     run_blind_loops(campaign, order, options.jobs, hooks_of(progress), *loops);
   } catch (const Interrupted& error) {
-    throw std::runtime_error(progress.explain(error) + "; run the same command again to go on");
+    throw std::runtime_error(progress.explain(error) + "; run the same command again to resume");
   }
   const AssessmentContext context =
       assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));

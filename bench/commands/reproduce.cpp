@@ -62,7 +62,7 @@ void show(const ReproduceArguments& options, const std::vector<Table>& tables) {
   print_result(options.json ? reproduction_json(tables, options.changes) : document_text(document));
 }
 
-/// Runs the tables; stopped, it says how to go on.
+/// Runs the tables; stopped, it says how to resume.
 std::vector<std::vector<ReproducedTable>> run_tables(TableRuns runs, const ReproduceArguments& options,
                                                      const std::string& command_line) {
   Progress progress(options.quiet, "tables");

@@ -246,7 +246,7 @@ void add_suite(CommandSet& commands) {
       "Methods that assess the loops, separated by commas, or all (default: those of the suite)");
   add_method_files(app, options->method_files);
   add_path(app, "--join", options->join,
-           "Show them beside the methods of a board: finished, none, or a file SUITE.board.json (default: "
+           "Show the run beside the methods of a board: finished, none, or a file SUITE.board.json (default: "
            "finished with --method-file, where the loops are those of the suite)");
   app.add_option("--highlight", options->highlight,
                  "Methods to mark and to rank, separated by commas (default: those that join a board)")

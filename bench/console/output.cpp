@@ -22,7 +22,7 @@ void print_note(std::string_view text) {
 }
 
 std::string how_to_go_on(std::string_view where, std::string_view command) {
-  return fmt::format("\nFinished work is kept {}. To go on with it:\n  {}", where, command);
+  return fmt::format("\nFinished work is kept {}. To resume it:\n  {}", where, command);
 }
 
 std::string without_discard(std::string command_line) {

@@ -125,7 +125,7 @@ ShardStore::ShardStore(const std::filesystem::path& folder, ShardIdentity identi
   const std::vector<std::filesystem::path> shards = folder_->shards();
   if (options.leftovers == Leftovers::refuse && !shards.empty())
     throw InputError(folder.string(), fmt::format("{} shards of an earlier run", shards.size()),
-                     "--resume to go on with it, or --discard to delete its finished work");
+                     "--resume to continue it, or --discard to delete its finished work");
   try {
     take_stock(shards, options.warn);
   } catch (const InputError&) {

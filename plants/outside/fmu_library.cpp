@@ -29,7 +29,7 @@ std::string_view status_words(int status) {
     case fmi2::pending:
       return "pending, which was not allowed";
     default:
-      return "a status that there is not";
+      return "an unknown status";
   }
 }
 

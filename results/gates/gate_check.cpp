@@ -41,7 +41,7 @@ BaselineComparison compare(const Campaign& campaign, const Campaign& baseline, c
   const RunPairing pairing = pair_runs(before, now);
   if (!pairing.paired())
     throw InputError(where, "runs that cannot be paired: " + pairing.obstacle,
-                     fmt::format("a run of the study '{}' with seed {} in which the same is wrong in each "
+                     fmt::format("a run of the study '{}' with seed {} with the same fault in each "
                                  "experiment",
                                  campaign.study.name, campaign.study.seed));
   if (pairing.loops < static_cast<std::int64_t>(now.records.size()))

@@ -236,7 +236,7 @@ class DataSketcher {
       write_qualities();
     }
     for (const std::string& variable : missing_)
-      line(fmt::format("# To do: no column is called like {}: add it to tags.", in_comment(variable)));
+      line(fmt::format("# To do: no column has a name like {}: add it to tags.", in_comment(variable)));
     write_others();
   }
 

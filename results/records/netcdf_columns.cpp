@@ -328,7 +328,7 @@ std::vector<double> as_numbers(const std::string& bytes) {
 std::string_view as_bytes(const std::vector<double>& numbers) {
   const double room = static_cast<double>(numbers.size()) * sizeof(double);
   if (numbers.empty() || !(numbers.front() >= 0.0 && numbers.front() + sizeof(double) <= room))
-    throw ForeignFailure("its process gave an answer that is none");
+    throw ForeignFailure("its process gave no valid answer");
   return {reinterpret_cast<const char*>(numbers.data() + 1), static_cast<std::size_t>(numbers.front())};
 }
 
@@ -403,8 +403,7 @@ RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& 
   } catch (const ForeignFailure& failure) {
     throw InputError(file, fmt::format("a file that HDF5 cannot read ({})", failure.what()), kAllowed);
   } catch (const std::runtime_error&) {  // of its bytes
-    throw InputError(file, "a file that HDF5 cannot read (its process gave an answer that is none)",
-                     kAllowed);
+    throw InputError(file, "a file that HDF5 cannot read (its process gave no valid answer)", kAllowed);
   }
 }
 

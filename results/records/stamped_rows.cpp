@@ -298,7 +298,7 @@ class RowsReader {
     if (in_time.without > 0)
       warn(fmt::format("{} rows without a time stamp are left out", in_time.without));
     if (in_time.turned)
-      warn("the newest row stands first: the rows are turned round");
+      warn("the newest row comes first: the rows are reversed");
     warn_of_doubles(in_time.doubles);
     for (const std::size_t row : in_time.rows)
       rows_.times.push_back(stamps.times[row]);

@@ -159,7 +159,7 @@ DateOrder shown_order(const StampSource& source, const Dates& dates) {
   if (points && !month_first)
     return DateOrder::day_month_year;
   throw InputError(source.where,
-                   fmt::format("dates such as '{}', whose day and month nothing tells apart", *example),
+                   fmt::format("dates such as '{}', in which day and month cannot be told apart", *example),
                    "data.date_order = \"day-month-year\" or \"month-day-year\" in the study file");
 }
 
@@ -241,7 +241,7 @@ TimeStamps from_dates(const StampSource& source, const Dates& dates, const Stamp
       continue;
     const std::optional<double> days = days_of(*dates[row], order);
     if (!days)
-      refuse_stamp(source, row, "a day that there is, in the order data.date_order");
+      refuse_stamp(source, row, "a day that exists, in the order data.date_order");
     const std::optional<WrittenTime>& time = dates[row]->time;
     stamps.offsets = stamps.offsets && time && has_offset(*time);
     stamps.times[row] = kSecondsOfDay * *days + (time ? time->seconds - time->offset.value_or(0.0) : 0.0);

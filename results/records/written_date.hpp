@@ -40,7 +40,7 @@ std::optional<WrittenTime> written_time(std::string_view cell);
 /// The date in 12, 14 or 17 digits, without signs between them: 20241027025930. None for other numbers.
 std::optional<WrittenDate> compact_date(std::string_view cell);
 
-/// Days since 1970; none for a day that there is not. `order` is for a date that is not resolved.
+/// Days since 1970; none for a day that does not exist. `order` is for a date that is not resolved.
 std::optional<double> days_of(const WrittenDate& date, DateOrder order);
 
 }  // namespace mpm

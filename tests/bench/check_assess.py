@@ -182,7 +182,7 @@ def check_times(mistakes, right):
     assert verdict(mistakes.assess(american)) == right
     early = datetime.datetime(2024, 3, 4)
     mistakes.refused(stamped(lambda k: (early + datetime.timedelta(minutes=k)).strftime("%d/%m/%Y %H:%M")),
-                     "day and month nothing tells apart", "data.date_order")
+                     "day and month cannot be told apart", "data.date_order")
     assert verdict(mistakes.assess(text_of(list(reversed(mistakes.rows))))) == right
     mistakes.warned(text_of(mistakes.rows, columns=COLUMNS[1:]), "no column of time stamps")
     mistakes.refused(stamped(lambda k: "yesterday"), "found 'yesterday'", "numbers, or dates")

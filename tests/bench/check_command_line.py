@@ -100,7 +100,7 @@ def main(program, chapter6):
         assert not list((folder / "half").glob("*.h5"))
         error = stopped(signal.SIGTERM, program, "compare", archive, "-o", folder / "b.h5", "--jobs", 1)
         assert re.search(r"SIGTERM: stopped when [0-5] of \d experiments were done$", error, re.MULTILINE), error
-        assert f"To go on with it:\n  mpmbench compare {archive} -o {folder / 'b.h5'}" in error, error
+        assert f"To resume it:\n  mpmbench compare {archive} -o {folder / 'b.h5'}" in error, error
         assert "bit-identical" in run("replay", archive, 3).stdout
 
         # Bad input names file, line and key, and writes nothing.

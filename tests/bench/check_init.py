@@ -206,7 +206,7 @@ def check_given_numbers(run, folder):
     written = run("init", "-", "--data", folder / "others.csv", "--cvs", "purity", "--mvs", "reflux", "--gains", 1,
                   "--time-constants", 10).stdout
     assert "the noise" not in written.partition("[data]")[0].rpartition("[methods]")[2], written
-    assert written.count("# To do: no column is called like") == 2
+    assert written.count("# To do: no column has a name like") == 2
 
 
 def check_proposed_benchmark(run, folder):

@@ -37,7 +37,7 @@ def check_going_on(program, folder):
                                    text=True)
         error = interrupt(process, kept, number=number)[1]
         assert process.returncode == (3 if number == signal.SIGTERM else -number), (process.returncode, error)
-        assert (number == signal.SIGKILL) or "of 6 tables were done" in error and "To go on with it" in error, error
+        assert (number == signal.SIGKILL) or "of 6 tables were done" in error and "To resume it" in error, error
         assert not killed.exists()
     done = {file: file.stat().st_mtime_ns for file in kept.rglob("*.shard")}
     damaged = min(done)

@@ -183,7 +183,7 @@ def check_comparison(program, folder):
         process.send_signal(moments.choice([signal.SIGKILL, signal.SIGTERM]))
         error = process.communicate(timeout=PATIENCE)[1]
         kills += process.returncode != 0
-        assert process.returncode in (0, -signal.SIGKILL) or process.returncode == 3 and "To go on with it" in error, error
+        assert process.returncode in (0, -signal.SIGKILL) or process.returncode == 3 and "To resume it" in error, error
     assert kills > 0
     compare(killed)
     assert contents(killed) == reference and not shards.exists()
@@ -230,7 +230,7 @@ def check_comparison(program, folder):
     process = subprocess.Popen([*command[:-5], folder / "anew.h5", *command[-4:], "--discard"],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     error = interrupt(process, folder / "anew.h5.compared.shards", number=signal.SIGTERM)[1]
-    assert process.returncode == 0 or "To go on with it" in error and "--discard" not in error, error
+    assert process.returncode == 0 or "To resume it" in error and "--discard" not in error, error
 
     # Where nothing is missing, shards that a run of this name has left are none of its business.
     left = folder / "copied.h5.shards" / "00000001.shard"

@@ -132,7 +132,7 @@ class Trial:
         """Nothing is kept but what is finished, and the same command gives the undisturbed result."""
         assert re.search(why, self.said), self.said
         assert not self.output.exists()
-        assert shard_files(self.folder) and "To go on with it" in self.said, self.said
+        assert shard_files(self.folder) and "To resume it" in self.said, self.said
         assert self.run(*self.words, *self.again, "-o", self.output) == 0, self.said
         check_same(self.output, self.reference)
         assert not shard_files(self.folder)

@@ -62,7 +62,7 @@ TEST_CASE("time stamps are those of the calendar", "[records]") {
   CHECK(times_of({"1/3/2024 12:00"}, DateOrder::day_month_year) == std::vector<double>{noon});
   CHECK(std::isnan(times_of({"1", "", "3"})[1]));
   CHECK(date_text(noon + 59.9) == "2024-03-01 12:00:59");
-  CHECK_THROWS_WITH(times_of({"2024-02-30"}), Catch::Contains("a day that there is"));
+  CHECK_THROWS_WITH(times_of({"2024-02-30"}), Catch::Contains("a day that exists"));
   CHECK_THROWS_WITH(times_of({"2024-02-28", "5"}), Catch::Contains("stamps of one form"));
   CHECK(times_of({"2024-02-29 24:00", "2024-03-01 00:00:00"}) == std::vector<double>(2, noon - 43200.0));
 }

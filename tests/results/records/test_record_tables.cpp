@@ -58,7 +58,7 @@ TEST_CASE("dates are read with names of months, without signs between them, and 
     CHECK(stamps_of({noon, noon}, {.order = DateOrder::day_month_year}).times ==
           std::vector<double>{kNoon, kNoon});
   }
-  CHECK_THROWS_WITH(stamps_of({"31-Feb-24"}), Catch::Contains("a day that there is"));
+  CHECK_THROWS_WITH(stamps_of({"31-Feb-24"}), Catch::Contains("a day that exists"));
   CHECK_THROWS_WITH(stamps_of({"2024-03-01 12:00 CST"}), Catch::Contains("data.time_zone"));
   CHECK(written_time("2:59:30.5 PM")->seconds == 53970.5);
   CHECK_FALSE(written_time("2024-03-01"));
@@ -328,7 +328,7 @@ TEST_CASE("guesses know setpoint, mode and quality beside a tag, and leave bad v
   for (const char* part :
        {"tags = {AI101 = \"AI101.PV\", FC11 = \"FC11.SP\"}", "setpoint = {AI101 = \"AI101.SP\"}",
         "mode = {FC11 = \"FC11.MODE\"}", "quality = {AI101 = \"AI101.Status\", FC11 = \"FC11.Q\"}",
-        "no column is called like reflux", "operating_point = {AI101 = 96.4898, FC11 = 7}"})
+        "no column has a name like reflux", "operating_point = {AI101 = 96.4898, FC11 = 7}"})
     CHECK_THAT(sketch.table, Catch::Contains(part));
   CHECK(sketch.spread.at("AI101") < 1.0);
   CHECK(data_sketch(plant, parse_csv("time,FC11.SP\n1,2\n2,3\n", "f")).table.find("\"FC11.SP\"") !=
