@@ -34,8 +34,8 @@ struct KeptFile {
   fs::file_time_type used;
 };
 
-/// Whether it has the name of a file of a cache, and which; that of one that was being written when its
-/// process was killed has more behind it.
+/// The name in the cache to which a file belongs; none for a file that belongs to no cache. A file that was
+/// being written when its process was killed has a longer name of its own.
 std::optional<std::string> name_in_cache(const fs::path& file) {
   const std::string name = file.filename().string();
   const std::string own = name.substr(0, kDigits + kKept.size());

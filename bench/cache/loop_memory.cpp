@@ -23,10 +23,10 @@
 namespace mpm {
 namespace {
 
-/// A campaign of more bytes is not kept beyond them: all of it is in memory.
+/// Loops of a campaign beyond so many bytes are not kept, because all that is kept is in memory.
 constexpr std::size_t kMostHeld = std::size_t{256} << 20;
 
-/// What decides on last bits besides the program: libraries, processor, and what these are told.
+/// What decides the last bits besides the program: libraries, processor, and their settings.
 std::string this_machine() {
   std::string text = loaded_code();
   for (const char* const name :

@@ -71,8 +71,8 @@ BasisCase run_loops(const CampaignLoops& loops, ShardStore& store, const std::ve
   return basis;
 }
 
-/// Says in a folder of shards of which campaign they are, so that what is done of it can be looked at;
-/// without a shard to speak of it goes at the end.
+/// Notes in a folder of shards to which campaign they belong, so that finished work can be looked at. The
+/// note is removed at the end if there is no shard.
 class ShardsDescription {
  public:
   ShardsDescription(const std::filesystem::path& shards, const CampaignLoops& loops) : shards_(shards) {

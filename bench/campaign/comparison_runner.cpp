@@ -32,7 +32,7 @@ void change_records(Campaign& campaign, const std::function<RecordChange()>& beg
     change(record);
 }
 
-/// Of a list, what stands at these places.
+/// The entries of a list at these places.
 template <class List>
 List chosen(const List& all, const std::vector<std::size_t>& places) {
   List list;
@@ -41,7 +41,7 @@ List chosen(const List& all, const std::vector<std::size_t>& places) {
   return list;
 }
 
-/// The places of the methods of a campaign that are none of these.
+/// The places of the methods of a campaign that are not among these.
 std::vector<std::size_t> places_of_others(const Campaign& campaign, const AssessmentForms& forms) {
   std::vector<std::size_t> places;
   for (std::size_t place = 0; place < campaign.methods.size(); ++place)

@@ -110,7 +110,7 @@ class LoopFarm {
     }
   }
 
-  /// Has threads run the next `count` loops, or where worker processes wait those for which there is time.
+  /// Has threads run the next `count` loops or, where worker processes wait, those for which there is time.
   void run_round(std::vector<LoopWork::Thread>& threads, std::size_t count) {
     using RoundClock = std::chrono::steady_clock;
     const RoundClock::time_point end = pool_ ? RoundClock::now() + kRound : RoundClock::time_point::max();

@@ -65,8 +65,8 @@ struct SuiteArguments {
   }
 };
 
-/// The finished board beside which one's own methods are shown; none: they stand alone. Without --join,
-/// methods of one's own join the board of the suite where their loops are those of the suite.
+/// The finished board beside which the user's methods are shown; none: they stand alone. Without --join,
+/// these methods join the board of the suite if their loops are those of the suite.
 std::optional<FinishedBoard> board_to_join(const SuiteArguments& options, const Suite& suite,
                                            Progress& progress) {
   const fs::path finished = finished_board_path(suite);
@@ -152,8 +152,8 @@ std::vector<const SuiteCell*> cells_of(const Suite& suite, const std::optional<P
 
 /// Runs a suite, or what is missing of it, cell by cell, and shows its leaderboard, which is also left in the
 /// folder as a page, as JSON, CSV and LaTeX, and as a board that others can join. An archive that is there
-/// and is what this run would make of the cell is kept as it is, so that the same command goes on, and the
-/// scores are those of one go.
+/// and is what this run would make of the cell is kept as it is, so that the same command resumes the suite,
+/// and the scores are those of a single run.
 ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   Suite suite = find_suite(options.suite, options.choice);
   Progress progress(options.quiet);

@@ -49,7 +49,7 @@ struct Candidates {
   }
 };
 
-/// By what they cost the one in the middle: neither the clearest nor the faintest.
+/// The one with the median cost: neither the clearest nor the faintest.
 std::vector<Candidate> middle_one(std::vector<Candidate> of) {
   std::stable_sort(of.begin(), of.end(),
                    [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
