@@ -314,8 +314,15 @@ OptionKeys other_keys(Study& study) {
                         "(1 without noise); either sign",
                         "1"),
       key::distribution("valve", ranges.valve, positive,
-                        "S of a valve over the range of the hard limits of its MV (1 without them)", "1"),
-      key::distribution("jump", ranges.jump, positive, "J of a sticking valve over its S", "1"),
+                        "S, d or f_S of a valve over the range of the hard limits of its MV (1 without them)",
+                        "1"),
+      key::choice(
+          "valve_start", ranges.valve_start,
+          "where the stem of a valve stands that sticks from the first sample on: where it is asked to, "
+          "or anywhere that it can stand under this signal, drawn for each experiment"),
+      key::distribution("jump", ranges.jump, positive,
+                        "J over S of `stiction`, and (f_S - f_D) over f_S of `friction`, at most 1 there",
+                        "1"),
       key::distribution("md_gain", ranges.md_gain, positive, "factor of the measurement of an MD", "1"),
       key::distribution("md_noise", ranges.md_noise, positive, "standard deviation of white noise on it",
                         "MD"),

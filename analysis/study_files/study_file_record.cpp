@@ -21,14 +21,37 @@ OptionKeys outliers_keys(RecordOptions& options) {
                         "deviation added to the sample, up or down", "noise standard deviations")};
 }
 
+/// A gap begins with a probability of at most 1 after each sample that is there.
+void check_spells(const TomlTable& table, double share, double length) {
+  if (const double largest = length / (length + 1.0); share > largest)
+    table.refuse("share", fmt::format("{}", share),
+                 fmt::format("at most {:.3g} with gaps of {} samples: a sample stands between two gaps",
+                             largest, length));
+}
+
+OptionKeys bad_keys(RecordOptions& options) {
+  return {key::number("share", options.bad_share, NumberRule::inside(0, 1),
+                      "long-run share of the samples of each CV that is bad", "1")
+              .required()
+              .allow("above 0, at most `length` / (`length` + 1)"),
+          key::number("length", options.bad_length, NumberRule::at_least(1),
+                      "mean length of a spell; lengths are geometrically distributed", "samples"),
+          key::check([&options](const TomlTable& table) {
+            check_spells(table, options.bad_share, options.bad_length);
+          }),
+          key::choice("value", options.bad_value,
+                      "what stands there: the last good value, or one far off, the same throughout"),
+          key::number("size", options.bad_size, NumberRule::finite(),
+                      "where a value that is off scale stands, from the operating point",
+                      "noise standard deviations"),
+          key::flag("quality", options.bad_quality,
+                    "the record has the quality of each value, so that bad ones are left out like gaps, and "
+                    "filled as `missing.fill` says")};
+}
+
 OptionKeys missing_keys(RecordOptions& options) {
-  // A gap begins with a probability of at most 1 after each sample that is there.
   const auto check_share = [&options](const TomlTable& table) {
-    if (const double largest = options.missing_length / (options.missing_length + 1.0);
-        options.missing_share > largest)
-      table.refuse("share", fmt::format("{}", options.missing_share),
-                   fmt::format("at most {:.3g} with gaps of {} samples: a sample stands between two gaps",
-                               largest, options.missing_length));
+    check_spells(table, options.missing_share, options.missing_length);
   };
   return {key::number("share", options.missing_share, NumberRule::inside(0, 1),
                       "long-run share of the samples of each CV that is missing", "1")
@@ -55,7 +78,7 @@ OptionKeys candidates_keys(RecordOptions& options) {
 /// Sizes are in standard deviations of the noise: without noise they would all be 0.
 void refuse_without_noise(const TomlTable& record, const Study& study) {
   const Eigen::VectorXd& noise = study.simulation.noise_standard_deviation;
-  for (const char* key : {"outliers", "quantisation", "compression"})
+  for (const char* key : {"outliers", "quantisation", "bad", "exception", "compression"})
     for (Eigen::Index cv = 0; cv < noise.size(); ++cv)
       if (record.has(key) && noise(cv) == 0.0)
         record.refuse(key,
@@ -120,6 +143,14 @@ OptionKeys record_keys(Study& study) {
           .otherwise("0: none"),
       key::optional_table(
           "missing", [&options] { return missing_keys(options); }, "gaps, each CV with its own"),
+      key::optional_table(
+          "bad", [&options] { return bad_keys(options); },
+          "spells of bad values, each CV with its own, with or without their quality"),
+      key::number("exception", options.exception, NumberRule::at_least(0),
+                  "tolerance of exception reporting: a value is reported where it differs by more from the "
+                  "last reported one, which the reader holds",
+                  "noise standard deviations")
+          .otherwise("0: every sample is reported"),
       key::number("compression", options.compression, NumberRule::at_least(0),
                   "tolerance of the swinging-door compression. The reader interpolates between archived "
                   "points, so no sample is off by more",

@@ -35,17 +35,22 @@ void refuse_sizes_of_nothing(const TomlTable& background, const BackgroundRanges
 
 OptionKeys background_keys(BackgroundRanges& ranges, const Study& study) {
   const NumberRule rule = NumberRule::at_least(0);
-  return {key::distribution("cv_size", ranges.cv_size, rule,
-                            "standard deviation of the disturbance that is added to a CV",
-                            "noise standard deviations"),
-          key::distribution(
-              "mv_size", ranges.mv_size, rule,
-              "standard deviation of the disturbance that is added to an MV on its way to the plant",
-              "width of the hard limits"),
-          key::distribution("time_constant", ranges.time_constant, rule,
-                            "of the autocorrelation exp(-k / `time_constant`) of both; 0: white", "samples"),
-          key::check(
-              [&ranges, &study](const TomlTable& table) { refuse_sizes_of_nothing(table, ranges, study); })};
+  return {
+      key::distribution("cv_size", ranges.cv_size, rule,
+                        "standard deviation of the disturbance that is added to a CV",
+                        "noise standard deviations"),
+      key::distribution(
+          "mv_size", ranges.mv_size, rule,
+          "standard deviation of the disturbance that is added to an MV on its way to the plant",
+          "width of the hard limits"),
+      key::distribution("time_constant", ranges.time_constant, rule,
+                        "of the autocorrelation exp(-k / `time_constant`) of both; 0: white", "samples"),
+      key::distribution("swell", ranges.swell, NumberRule::positive(),
+                        "how much larger they are at their largest than at their smallest: their size comes "
+                        "and goes once a record, in each loop at another time",
+                        "1"),
+      key::check(
+          [&ranges, &study](const TomlTable& table) { refuse_sizes_of_nothing(table, ranges, study); })};
 }
 
 OptionKeys parameter_keys(WorldParameter& parameter, const Study& study) {
@@ -147,6 +152,19 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
           .also(kNoLongMemory),
       key::distribution("noise_factor", ranges.noise_factor, rule,
                         "factor of the measurement noise of a CV, in the benchmark as well", "1"),
+      key::distribution(
+          "valve_curvature", ranges.valve_curvature, NumberRule::inside(-1, 1),
+          "c of the valve of each MV, of which the plant gets u + c (u - a) (b - u) / (b - a), a "
+          "and b the hard limits, less what this adds where the loop starts: its gain goes from "
+          "1 + c to 1 - c",
+          "1"),
+      key::check([&ranges, &study](const TomlTable& world) {
+        const Limits& hard = study.controller.mv_hard;
+        if (!(ranges.valve_curvature == Distribution::constant(0.0)) &&
+            !((hard.upper - hard.lower).allFinite() && (hard.upper.array() > hard.lower.array()).all()))
+          world.refuse("valve_curvature", "valves of MVs without a range",
+                       "controller.mv.NAME.hard with two different numbers for every MV");
+      }),
       key::whole("cost_loops", ranges.cost_loops, 1, kMostCostLoops,
                  "pairs of loops, with the fault and without it, over whose noise its cost is averaged"),
       key::whole("repair_loops", ranges.repair_loops, 0, kMostCostLoops,

@@ -605,8 +605,8 @@ RecordTable perturbed(const Study& study) {
       assessment;
   [[maybe_unused]] const auto& [trajectory, y_sim] = loop;
   [[maybe_unused]] const auto& [v, y_d, mpm_alone, ud_alone] = truth;
-  [[maybe_unused]] const auto& [loop_status, samples_done, y, u, u_target, d, y_set, of_loop, failure, what] =
-      trajectory;
+  [[maybe_unused]] const auto& [loop_status, samples_done, y, u, u_target, d, y_set, y_rows, of_loop, failure,
+                                what] = trajectory;
   [[maybe_unused]] const auto& [steps, iterations, fallbacks, residual] = statistics;
 }
 

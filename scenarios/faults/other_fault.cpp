@@ -1,5 +1,6 @@
 #include "scenarios/faults/other_fault.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <tuple>
 
@@ -9,12 +10,20 @@ namespace mpm {
 namespace {
 
 auto members(const OtherFault& fault) {
-  const auto& [kind, variable, size, jump] = fault;
-  return std::tie(kind, variable, size, jump);
+  const auto& [kind, variable, size, jump, start] = fault;
+  return std::tie(kind, variable, size, jump, start);
 }
 
 std::unique_ptr<ValveStem> sticky(const OtherFault& fault, double u) {
-  return std::make_unique<StickyValve>(fault.size, fault.jump, u);
+  return std::make_unique<StickyValve>(fault.size, fault.jump, u, fault.start);
+}
+
+std::unique_ptr<ValveStem> stick_slip(const OtherFault& fault, double u) {
+  return std::make_unique<FrictionValve>(fault.size, 0.0, u, fault.start);
+}
+
+std::unique_ptr<ValveStem> friction(const OtherFault& fault, double u) {
+  return std::make_unique<FrictionValve>(fault.size, std::max(0.0, fault.size - fault.jump), u, fault.start);
 }
 
 }  // namespace
@@ -38,7 +47,8 @@ const OtherFaultInfo& info_of(OtherFaultKind kind) {
        .has_either_sign = true,
        .grows_to_end = true},
       {.kind = OtherFaultKind::stiction,
-       .meaning = "of a valve with the two parameters S and J of Choudhury, Thornhill and Shah (2005)",
+       .meaning = "of a valve with the two parameters S and J of Choudhury, Thornhill and Shah (2005), which "
+                  "stops at every reversal as that of Kano et al. (2004) does",
        .sort = VariableSort::mv,
        .effect = FaultEffect::valve,
        .size = &R::valve,
@@ -74,6 +84,26 @@ const OtherFaultInfo& info_of(OtherFaultKind kind) {
        .meaning = "of an MV that an operator holds where it is, without the controller being told",
        .sort = VariableSort::mv,
        .effect = FaultEffect::hold},
+      {.kind = OtherFaultKind::sensor_stuck,
+       .meaning = "of a sensor that shows what it measured at the onset",
+       .sort = VariableSort::cv,
+       .effect = FaultEffect::sensor_stuck},
+      {.kind = OtherFaultKind::stick_slip,
+       .meaning = "of a valve after Stenman, Gustafsson and Forsman (2003): it stays until the signal is d "
+                  "away, and then jumps to it",
+       .sort = VariableSort::mv,
+       .effect = FaultEffect::valve,
+       .size = &R::valve,
+       .unit = SizeUnit::hard_range,
+       .stem = stick_slip},
+      {.kind = OtherFaultKind::friction,
+       .meaning = "of a valve with static and kinetic friction f_S and f_D after He et al. (2007)",
+       .sort = VariableSort::mv,
+       .effect = FaultEffect::valve,
+       .size = &R::valve,
+       .unit = SizeUnit::hard_range,
+       .jump = &R::jump,
+       .stem = friction},
   }};
   assert(table[static_cast<std::size_t>(kind)].kind == kind);
   return table[static_cast<std::size_t>(kind)];

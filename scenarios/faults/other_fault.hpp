@@ -26,12 +26,15 @@ enum class OtherFaultKind : std::int8_t {
   md_noise = 5,
   limit = 6,
   held_mv = 7,
+  sensor_stuck = 8,
+  stick_slip = 9,
+  friction = 10,
 };
 
 template <>
 inline constexpr auto kWords<OtherFaultKind> = word_list("sensor_bias", "sensor_drift", "stiction",
                                                          "deadband", "md_gain", "md_noise", "limit",
-                                                         "held_mv");
+                                                         "held_mv", "sensor_stuck", "stick_slip", "friction");
 inline constexpr auto kOtherFaultKinds = enumerators<OtherFaultKind>();
 
 /// What a fault is about.
@@ -41,8 +44,11 @@ enum class VariableSort { cv, mv, md };
 /// |--------------|----------|-------------------------------------------------------------|
 /// | sensor_bias  | CV       | added to its measurement, CV unit                           |
 /// | sensor_drift | CV       | added at the end of the record, on a line from the onset on |
-/// | stiction     | MV       | S of the valve, MV unit (StickyValve); its J is `jump`      |
-/// | deadband     | MV       | S of the valve, J = 0                                       |
+/// | sensor_stuck | CV       | none: it shows what it measured at the onset                |
+/// | stiction     | MV       | S of a StickyValve, MV unit; its J is `jump`                |
+/// | deadband     | MV       | S of a StickyValve, J = 0                                   |
+/// | stick_slip   | MV       | d of a FrictionValve, f_S = d and f_D = 0                   |
+/// | friction     | MV       | f_S of a FrictionValve, f_D = f_S - `jump`                  |
 /// | md_gain      | MD       | factor of its measurement                                   |
 /// | md_noise     | MD       | standard deviation of white noise on it, MD unit            |
 /// | limit        | CV       | added to both soft limits in the controller, CV unit        |
@@ -56,19 +62,31 @@ struct OtherFault {
   OtherFaultKind kind;
   Eigen::Index variable;  ///< place of the CV, MV or MD
   double size = kNaN;
-  double jump = 0.0;  ///< J of a sticking valve, MV unit
+  double jump = 0.0;   ///< J of a sticking valve, MV unit
+  double start = 0.0;  ///< of a valve that sticks from the first sample on: where it stands (StickyValve)
 
   friend bool operator==(const OtherFault& a, const OtherFault& b);
 };
 
+/// Where the stem of a valve stands that sticks from the first sample on.
+enum class ValveStart : std::int8_t {
+  signal = 0,   ///< where it is asked to
+  unknown = 1,  ///< anywhere that it can stand under this signal, drawn for each experiment
+};
+
+template <>
+inline constexpr auto kWords<ValveStart> = word_list("signal", "unknown");
+
 /// Ranges of the random faults of this sort.
 struct OtherRanges {
-  /// Relative frequency of each kind, in their order. One that the loop cannot have is never drawn.
+  /// Relative frequency of each kind, in their order; those from sensor_stuck on came later, and are drawn
+  /// where a study asks for them. One that the loop cannot have is never drawn.
   std::array<double, kOtherFaultKinds.size()> weight{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   /// Bias or final drift of a sensor over the standard deviation of its noise, with either sign.
   Distribution sensor = Distribution::uniform(5.0, 20.0);
-  /// S of a valve over the range between the hard limits of its MV; over 1 where there is none.
+  /// S, d or f_S of a valve over the range between the hard limits of its MV; over 1 where there is none.
   Distribution valve = Distribution::uniform(0.02, 0.1);
+  ValveStart valve_start = ValveStart::signal;
   /// J of a sticking valve over its S.
   Distribution jump = Distribution::uniform(0.2, 1.0);
   Distribution md_gain = Distribution::uniform(0.3, 1.7);
@@ -85,6 +103,7 @@ struct OtherRanges {
 /// What a fault changes in its loop. Several kinds of faults may change the same thing in other ways.
 enum class FaultEffect : std::int8_t {
   sensor_error,  ///< something is added to the measurement of a CV
+  sensor_stuck,  ///< the measurement of a CV stays what it was
   valve,         ///< a ValveStem follows the signal of an MV
   md_error,      ///< something is added to the measurement of an MD
   limit,         ///< both soft limits of a CV move in the controller

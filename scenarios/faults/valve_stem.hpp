@@ -29,8 +29,10 @@ class ValveStem {
 /// deadband without a jump.
 class StickyValve final : public ValveStem {
  public:
-  /// At rest where the signal is `u`. Errors: InputError unless S and J are finite and >= 0.
-  StickyValve(double stickband, double jump, double u);
+  /// At rest where the signal is `u`. `start` is how far it stands from it, from -1 to 1 of (S + J) / 2, the
+  /// furthest that it can; 0: it stands at u and has come up to it. Errors: InputError unless S and J are
+  /// finite and >= 0.
+  StickyValve(double stickband, double jump, double u, double start = 0.0);
 
   double follow(double u) override;
 
@@ -40,6 +42,30 @@ class StickyValve final : public ValveStem {
   double last_move_ = 0.0;
   double direction_ = 1.0;
   bool rests_ = true;
+};
+
+/// Stiction by friction, of He, Wang, Pottmann and Qin ("A curve fitting method for detecting valve stiction
+/// in oscillating control loops", Industrial and Engineering Chemistry Research 46, 2007, 4549-4560). A force
+/// u - x below the static friction f_S leaves the stem x where it is; a larger one moves it until the kinetic
+/// friction f_D is left,
+///
+///   x(k) = x(k-1)            where |u(k) - x(k-1)| <= f_S,
+///   x(k) = u(k) -+ f_D       otherwise, - for an upward move.
+///
+/// The stem is at rest between samples: each move needs f_S. In terms of StickyValve S = f_S + f_D and
+/// J = f_S - f_D. With f_D = 0 it is the valve of Stenman, Gustafsson and Forsman ("A segmentation-based
+/// method for detection of stiction in control valves", International Journal of Adaptive Control and Signal
+/// Processing 17, 2003, 625-634): it stays until |u - x| > d = f_S, and then jumps to u.
+class FrictionValve final : public ValveStem {
+ public:
+  /// At rest under the signal `u`, at u + start f_S. Errors: InputError unless both are finite and
+  /// 0 <= f_D <= f_S.
+  FrictionValve(double static_friction, double kinetic_friction, double u, double start = 0.0);
+
+  double follow(double u) override;
+
+ private:
+  double static_, kinetic_, position_;
 };
 
 }  // namespace mpm

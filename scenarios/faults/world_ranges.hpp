@@ -26,6 +26,9 @@ struct BackgroundRanges {
   Distribution cv_size = Distribution::constant(0.0);  ///< s, in standard deviations of the CV's noise
   Distribution mv_size = Distribution::constant(0.0);  ///< s, in parts of the width of the MV's hard limits
   Distribution time_constant = Distribution::constant(0.0);  ///< samples; 0: white
+  /// The largest size of s over the smallest along a record, drawn once a world: s goes with
+  /// swell^(sin(2 pi k / N + phase) / 2), the phase drawn in each loop anew.
+  Distribution swell = Distribution::constant(1.0);
 
   bool operator==(const BackgroundRanges&) const = default;
 };
@@ -44,7 +47,11 @@ struct WorldRanges {
   /// Time constant of a further lag, over the residence time of the channel.
   Distribution extra_lag = Distribution::constant(0.0);
   Distribution noise_factor = Distribution::constant(1.0);  ///< of the noise of each CV
-  std::vector<WorldParameter> plant_parameters = {};        ///< of a nonlinear plant, in place of channels
+  /// c of the characteristic of each valve: with hard limits a and b of its MV the plant gets
+  /// u + c (u - a) (b - u) / (b - a), less what this adds where the loop starts. The gain of the MV goes from
+  /// 1 + c to 1 - c between its limits, and no model has that.
+  Distribution valve_curvature = Distribution::constant(0.0);
+  std::vector<WorldParameter> plant_parameters = {};  ///< of a nonlinear plant, in place of channels
   BackgroundRanges background = {};
   int cost_loops = 8;  ///< pairs of loops over whose noise the cost of a fault is an expectation
   /// Loops over whose noise the gain of repairing a channel is an expectation; 0: it is not computed.

@@ -81,7 +81,18 @@ void begin(Plant& plant, const Eigen::VectorXd& input, Trajectory& trajectory) {
 class Surroundings {
  public:
   Surroundings(const Study& study, const LoopSignals& signals)
-      : study_(study), faults_(signals.faults), u_d_(signals.u_d), schedule_(study) {}
+      : study_(study),
+        faults_(signals.faults),
+        u_d_(signals.u_d),
+        curvature_(signals.valve_curvature),
+        schedule_(study) {}
+
+  /// The MVs where the loop starts: every valve passes them as they are.
+  void start(const Eigen::Ref<const Eigen::VectorXd>& u) {
+    start_offset_ = Eigen::VectorXd::Zero(curvature_.size());
+    for (Eigen::Index mv = 0; mv < curvature_.size(); ++mv)
+      start_offset_(mv) = bend(mv, u(mv));
+  }
 
   /// Before the controller decides on sample k: what is off, and its soft limits, where they move. `before`
   /// are the MVs that act until then.
@@ -115,14 +126,25 @@ class Surroundings {
         valve_ = info_of(fault.fault.kind).stem(fault.fault, before(fault.mv));
       acting(fault.mv) = valve_->follow(u(fault.mv));
     }
+    for (Eigen::Index mv = 0; mv < curvature_.size(); ++mv)
+      acting(mv) += bend(mv, acting(mv)) - start_offset_(mv);
     if (u_d_.size() > 0)
       acting += u_d_.col(k);
   }
 
  private:
+  /// What the characteristic of the valve adds.
+  double bend(Eigen::Index mv, double u) const {
+    const Limits& hard = study_.controller.mv_hard;
+    const double a = hard.lower(mv), b = hard.upper(mv);
+    return curvature_(mv) * (u - a) * (b - u) / (b - a);
+  }
+
   const Study& study_;
   const LoopFaults& faults_;
   const Eigen::MatrixXd& u_d_;
+  const Eigen::VectorXd& curvature_;
+  Eigen::VectorXd start_offset_;
   OffSchedule schedule_;
   std::unique_ptr<ValveStem> valve_;
 };
@@ -132,7 +154,7 @@ class RowRecorder {
  public:
   /// `plant` has the outputs of the rows, if there are any.
   RowRecorder(const Study& study, const LoopSignals& signals, const Plant& plant, bool has_rows)
-      : study_(study), added_(signals.y_rows), plant_(plant) {
+      : study_(study), faults_(signals.faults), added_(signals.y_rows), plant_(plant) {
     if (has_rows && added_.size() > 0) {
       require_shape("disturbances of the rows", added_, study.cv_count(), study.simulation.samples);
       output_.setZero(study.cv_count(), study.simulation.samples + 1);
@@ -163,10 +185,22 @@ class RowRecorder {
       else
         loop.y_sampled.row(cv) += rows_of(time, output_.row(cv), samples);
     }
+    if (faults_.stuck)
+      hold_stuck(loop);
   }
 
  private:
+  /// Rows whose time is after that from which the sensor is stuck show what it is stuck at.
+  void hold_stuck(Trajectory& loop) const {
+    const auto [cv, sample] = *faults_.stuck;
+    const double shift = row_time(study_.record, VariableSort::cv, cv).shift;
+    for (Eigen::Index k = 0; k < loop.y_sampled.cols(); ++k)
+      if (static_cast<double>(k) + shift > static_cast<double>(sample))
+        loop.y_sampled(cv, k) = loop.y(cv, sample);
+  }
+
   const Study& study_;
+  const LoopFaults& faults_;
   const Eigen::MatrixXd& added_;
   const Plant& plant_;
   Eigen::MatrixXd output_;  ///< ny x (N + 1)
@@ -181,6 +215,10 @@ LoopFaults loop_faults(const ExperimentDraw& draw) {
   const FaultEffect effect = info_of(fault.kind).effect;
   if (effect == FaultEffect::valve)
     faults.valve = {fault.variable, fault, draw.onset.sample};
+  if (faults.valve && draw.onset.sample > 0)
+    faults.valve->fault.start = 0.0;  // until then it was where it was asked to
+  if (effect == FaultEffect::sensor_stuck)
+    faults.stuck = {fault.variable, draw.onset.sample};
   if (effect == FaultEffect::hold)
     faults.hold = {fault.variable, draw.onset.sample};
   if (effect == FaultEffect::limit)
@@ -285,6 +323,7 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
   Surroundings surroundings(study, signals);
   Eigen::VectorXd u = input.head(study.mv_count());
   Eigen::VectorXd u_before = u;
+  surroundings.start(u);
   begin(plant, input, trajectory);
   AnalyserHold analysers(study.controller.analysers);
   if (trajectory.failure == LoopFailure::none)
@@ -297,6 +336,8 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
     begin(*recorder, input, trajectory);
   for (Eigen::Index k = 0; k < samples && trajectory.failure == LoopFailure::none; ++k) {
     trajectory.y.col(k) = plant.output() + signals.y_d.col(k) + signals.noise.col(k);
+    if (const auto& stuck = signals.faults.stuck; stuck && k > stuck->sample)
+      trajectory.y(stuck->cv, k) = trajectory.y(stuck->cv, stuck->sample);
     analysers.pass(trajectory.y.col(k));
     if (signals.y_set.size() > 0)
       controller.set_setpoints(signals.y_set.col(k));
@@ -377,6 +418,7 @@ LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw) {
     signals.u_d += always.u_d;
   else if (always.u_d.size() > 0)
     signals.u_d = std::move(always.u_d);
+  signals.valve_curvature = world.valve_curvature;
   signals.d_measured = measurements_of_mds(study, draw);
   signals.faults = loop_faults(draw);
   if (const Eigen::MatrixXd errors = sensor_errors(study, draw); errors.size() > 0)

@@ -83,8 +83,14 @@ struct LoopFaults {
     int sample;
   };
 
+  struct StuckSensor {
+    Eigen::Index cv;
+    int sample;
+  };
+
   std::optional<Valve> valve = {};
-  std::optional<Hold> hold = {};  ///< the MV stays where it is, and the record says so
+  std::optional<StuckSensor> stuck = {};  ///< shows what it measured at this sample
+  std::optional<Hold> hold = {};          ///< the MV stays where it is, and the record says so
   std::optional<LimitShift> limit = {};
 };
 
@@ -102,6 +108,7 @@ struct LoopSignals {
   Eigen::MatrixXd u_d{};         ///< added to the MVs on their way to the plant, nu x N; empty: nothing
   Eigen::MatrixXd d_measured{};  ///< MDs as they are measured, nd x N; empty: d
   LoopFaults faults{};
+  Eigen::VectorXd valve_curvature{};  ///< of each MV (WorldRanges), nu; empty: valves are straight
   /// What is added to the outputs of the plant at the times of the rows of the record, ny x N; empty: the
   /// loop has no such rows.
   Eigen::MatrixXd y_rows{};

@@ -375,6 +375,8 @@ void draw_other_fault(const Study& study, ExperimentDraw& draw) {
   const OtherFaultKind kind = kOtherFaultKinds[draw_place(weights, stream)];
   const Eigen::Index variable = draw_from(variables_of(study, kind), stream);
   draw.other = other_fault(study, kind, variable, stream);
+  if (study.other.valve_start == ValveStart::unknown && info_of(kind).effect == FaultEffect::valve)
+    draw.other->start = experiment_stream(study, draw.index, StreamId::valve_start).uniform(-1.0, 1.0);
   const VariableSort sort = info_of(kind).sort;
   draw.affected_cvs =
       sort == VariableSort::cv

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "base/non_finite.hpp"
 #include "scenarios/loop/record_rows.hpp"
@@ -32,34 +33,59 @@ void quantise(const Study& study, Eigen::MatrixXd& y) {
   }
 }
 
-/// The share of the chain in the long run is also the probability that the record begins within a gap.
-void make_gaps(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
-  const double share = study.record.missing_share;
-  const double ends = 1.0 / study.record.missing_length;
+/// Spells of a Markov chain of two states, of `length` samples in the mean and over `share` of the samples:
+/// the share in the long run is also the probability that the record begins within one.
+std::vector<bool> spells(double share, double length, Eigen::Index samples, RandomStream& stream) {
+  const double ends = 1.0 / length;
   const double begins = share * ends / (1.0 - share);
-  RandomStream stream = experiment_stream(study, index, StreamId::missing);
-  for (Eigen::Index cv = 0; cv < y.rows(); ++cv)
-    for (Eigen::Index k = 0; k < y.cols(); ++k) {
-      const bool after_gap = k > 0 && std::isnan(y(cv, k - 1));
-      const double probability = k == 0 ? share : after_gap ? 1.0 - ends : begins;
-      if (stream.uniform() < probability)
-        y(cv, k) = kNaN;
-    }
+  std::vector<bool> within(static_cast<std::size_t>(samples));
+  for (std::size_t k = 0; k < within.size(); ++k)
+    within[k] = stream.uniform() < (k == 0 ? share : within[k - 1] ? 1.0 - ends : begins);
+  return within;
 }
 
-/// Each run of samples between two gaps, the longest there is, through the door.
-void compress(const Study& study, Eigen::MatrixXd& y) {
+void make_gaps(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
+  RandomStream stream = experiment_stream(study, index, StreamId::missing);
   for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
-    const double deviation = study.record.compression * study.simulation.noise_standard_deviation(cv);
+    const std::vector<bool> missing =
+        spells(study.record.missing_share, study.record.missing_length, y.cols(), stream);
+    for (Eigen::Index k = 0; k < y.cols(); ++k)
+      if (missing[static_cast<std::size_t>(k)])
+        y(cv, k) = kNaN;
+  }
+}
+
+/// A record that begins with bad values is stuck at its first one.
+void make_bad(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
+  const RecordOptions& record = study.record;
+  RandomStream stream = experiment_stream(study, index, StreamId::bad_values);
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+    const std::vector<bool> bad = spells(record.bad_share, record.bad_length, y.cols(), stream);
+    const double off_scale = record.bad_size * study.simulation.noise_standard_deviation(cv);
+    double good = y(cv, 0);
+    for (Eigen::Index k = 0; k < y.cols(); ++k)
+      if (!bad[static_cast<std::size_t>(k)])
+        good = y(cv, k);
+      else
+        y(cv, k) = record.bad_quality ? kNaN : record.bad_value == BadValue::stuck ? good : off_scale;
+  }
+}
+
+/// Each run of samples between two gaps, the longest there is, through what a historian does with `deviation`
+/// standard deviations of the noise.
+void pass_runs(const Study& study, double deviation,
+               Eigen::RowVectorXd (*kept)(const Eigen::Ref<const Eigen::RowVectorXd>&, double),
+               Eigen::MatrixXd& y) {
+  for (Eigen::Index cv = 0; cv < y.rows(); ++cv)
     for (Eigen::Index from = 0; from < y.cols();) {
       Eigen::Index to = from;
       while (to < y.cols() && !std::isnan(y(cv, to)))
         ++to;
       if (to > from)
-        y.row(cv).segment(from, to - from) = compressed(y.row(cv).segment(from, to - from), deviation);
+        y.row(cv).segment(from, to - from) = kept(y.row(cv).segment(from, to - from),
+                                                  deviation * study.simulation.noise_standard_deviation(cv));
       from = to + 1;
     }
-  }
 }
 
 /// The straight line from sample `a` to sample `b`, in between.
@@ -89,6 +115,14 @@ Eigen::RowVectorXd compressed(const Eigen::Ref<const Eigen::RowVectorXd>& signal
     highest = std::min(highest, (signal(k) + deviation - signal(archived)) / distance);
   }
   draw_line(read, archived, signal.size() - 1);
+  return read;
+}
+
+Eigen::RowVectorXd reported(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double deviation) {
+  Eigen::RowVectorXd read = signal;
+  for (Eigen::Index k = 1; k < read.size(); ++k)
+    if (std::abs(signal(k) - read(k - 1)) <= deviation)
+      read(k) = read(k - 1);
   return read;
 }
 
@@ -130,11 +164,15 @@ Trajectory recorded(const Study& study, std::int64_t index, Trajectory loop) {
     add_outliers(study, index, loop.y);
   if (record.quantisation > 0.0)
     quantise(study, loop.y);
+  if (record.bad_share > 0.0)
+    make_bad(study, index, loop.y);
   if (record.missing_share > 0.0)
     make_gaps(study, index, loop.y);
+  if (record.exception > 0.0)
+    pass_runs(study, record.exception, reported, loop.y);
   if (record.compression > 0.0)
-    compress(study, loop.y);
-  if (record.missing_share > 0.0)
+    pass_runs(study, record.compression, compressed, loop.y);
+  if (record.missing_share > 0.0 || (record.bad_share > 0.0 && record.bad_quality))
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
       loop.y.row(cv) = filled(loop.y.row(cv), record.fill);
   return loop;

@@ -22,11 +22,13 @@ namespace mpm {
 /// 1. outliers: a sample of a CV is one with the probability outlier_share; outlier_size is added, up or
 /// down.
 /// 2. quantisation: the nearest multiple of the step.
-/// 3. gaps: a Markov chain of two states (Gilbert 1960), whose gaps have missing_length samples in the mean
+/// 3. bad values: spells, each CV with its own, in which the last good value or one far off stands. Where the
+///    record has their quality its reader leaves them out: they are gaps then.
+/// 4. gaps: a Markov chain of two states (Gilbert 1960), whose gaps have missing_length samples in the mean
 /// and
 ///    take missing_share of the record; each CV has its own. A gap is NaN.
-/// 4. compression by the swinging door, compressed(), from gap to gap.
-/// 5. gaps are filled by GapFill; at the ends of the record with the nearest value. A CV without any sample
+/// 5. exception reporting, reported(), and compression by the swinging door, compressed(), from gap to gap.
+/// 6. gaps are filled by GapFill; at the ends of the record with the nearest value. A CV without any sample
 ///    stays NaN.
 ///
 /// A pure function of its arguments, with streams of its own; the basis case has kBasisIndex. MVs and
@@ -39,6 +41,10 @@ Trajectory recorded(const Study& study, std::int64_t index, Trajectory loop);
 /// and the first and the last one are exact. Bristol, E.H. (1990), "Swinging door trending: adaptive trend
 /// recording?", ISA National Conference Proceedings, 749-754.
 Eigen::RowVectorXd compressed(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double deviation);
+
+/// What a reader gets back of `signal` with exception reporting: a value is reported where it differs from
+/// the last reported one by more than `deviation`, and stays until the next report.
+Eigen::RowVectorXd reported(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double deviation);
 
 /// The signal with its gaps (NaN) filled.
 Eigen::RowVectorXd filled(Eigen::RowVectorXd signal, GapFill fill);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "plants/linear/settling_time.hpp"
@@ -52,6 +53,31 @@ Eigen::MatrixXd values_of(const std::vector<BackgroundNoise>& noise, Eigen::Inde
   return x;
 }
 
+/// What the errors of channels cannot express, from streams of its own.
+void draw_structure(const Study& study, int number, World& world) {
+  const auto stream_of = [&](StreamId id) {
+    return RandomStream(study.seed, static_cast<std::uint64_t>(number), id);
+  };
+  const WorldRanges& ranges = *study.world;
+  if (!(ranges.background.swell == Distribution::constant(1.0))) {
+    RandomStream stream = stream_of(StreamId::background_swell);
+    world.background_swell = ranges.background.swell.sample(stream);
+  }
+  if (!(ranges.valve_curvature == Distribution::constant(0.0))) {
+    RandomStream stream = stream_of(StreamId::world_valves);
+    world.valve_curvature.resize(study.mv_count());
+    for (double& curvature : world.valve_curvature)
+      curvature = ranges.valve_curvature.sample(stream);
+  }
+}
+
+/// A size that comes and goes once a record.
+void swell(double by, double phase, Eigen::MatrixXd& signals) {
+  const double step = 2.0 * std::numbers::pi / static_cast<double>(signals.cols());
+  for (Eigen::Index k = 0; k < signals.cols(); ++k)
+    signals.col(k) *= std::pow(by, std::sin(step * static_cast<double>(k) + phase) / 2.0);
+}
+
 bool is_silent(const std::vector<BackgroundNoise>& noise) {
   return std::all_of(noise.begin(), noise.end(),
                      [](const BackgroundNoise& each) { return each.standard_deviation == 0.0; });
@@ -83,6 +109,7 @@ World draw_world(const Study& study, int number) {
   for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
     world.mv_background.push_back(draw_background(ranges.background, ranges.background.mv_size,
                                                   hard.upper(mv) - hard.lower(mv), stream));
+  draw_structure(study, number, world);
   return world;
 }
 
@@ -123,6 +150,12 @@ Background background(const Study& study, const World& world, std::int64_t index
     added.y_d = values_of(world.cv_background, study.simulation.samples, stream);
   if (!is_silent(world.mv_background))
     added.u_d = values_of(world.mv_background, study.simulation.samples, stream);
+  if (world.background_swell != 1.0) {
+    const double phase =
+        experiment_stream(study, index, StreamId::background_swell).uniform(0.0, 2.0 * std::numbers::pi);
+    swell(world.background_swell, phase, added.y_d);
+    swell(world.background_swell, phase, added.u_d);
+  }
   return added;
 }
 

@@ -26,11 +26,15 @@ struct BackgroundNoise {
 /// | noise_factor   | ny     | of the standard deviations of the measurement noise           |
 /// | cv_background  | ny     | added to each CV                                              |
 /// | mv_background  | nu     | added to each MV on its way to the plant                      |
+/// | background_swell |      | BackgroundRanges::swell                                       |
+/// | valve_curvature | nu    | of each valve; empty where all are straight                   |
 struct World {
   std::vector<Mismatch> errors;
   std::vector<ParameterChange> parameters;
   Eigen::VectorXd noise_factor;
   std::vector<BackgroundNoise> cv_background, mv_background;
+  double background_swell = 1.0;
+  Eigen::VectorXd valve_curvature = {};
 };
 
 /// World `number` of the study, a pure function of (study, seed, number). kExactWorld: nothing differs.

@@ -30,12 +30,16 @@ enum class StreamId : std::uint32_t {
   missing = 22,            ///< which samples of the record are missing
   md_noise = 23,           ///< variation of the measured disturbances
   dither = 24,             ///< test signals that are added to MVs
+  bad_values = 25,         ///< which values of the record are bad
   candidate = 50,          ///< which logged candidate drives a disturbance, if one does
   candidate_signals = 51,  ///< the first logged candidate; the numbers up to 59 are those of the others
   blind_order = 70,        ///< order of the loops of a blind export
   world = 80,              ///< the errors of the model of a world, the size and colour of its background
   listed_steps = 82,       ///< times, order and sizes of the listed steps of one loop
   background = 81,         ///< the disturbances that are always there, of one loop
+  valve_start = 83,        ///< where a sticking valve stands at first
+  background_swell = 84,   ///< when the disturbances that are always there are large, of one loop
+  world_valves = 85,       ///< the characteristics of the valves of a world
   /// Of the second disturbance of a named scenario; the following numbers are those of the third and so on.
   further_disturbance_signals = 0x1000,
 };

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
+#include "base/enum_words.hpp"
 #include "plants/output_sampling.hpp"
 #include "scenarios/faults/other_fault.hpp"
 #include "scenarios/random/distribution.hpp"
@@ -15,6 +17,15 @@ enum class GapFill {
   hold,    ///< the last value before the gap
   linear,  ///< the straight line between the values on both sides of the gap
 };
+
+/// What stands in the place of a bad value.
+enum class BadValue : std::int8_t {
+  stuck = 0,      ///< the last good one
+  off_scale = 1,  ///< one far off, the same throughout
+};
+
+template <>
+inline constexpr auto kWords<BadValue> = word_list("stuck", "off_scale");
 
 /// What the historian makes of the measured CVs that it keeps (historian.hpp). By default: every sample, as
 /// it was measured. The sizes are in standard deviations of the measurement noise of the CV
@@ -34,8 +45,14 @@ struct RecordOptions {
   double missing_share = 0.0;                              ///< of the samples of each CV, in the long run
   double missing_length = 1.0;                             ///< mean length of a gap, samples
   GapFill fill = GapFill::none;
-  double compression = 0.0;      ///< deviation that the historian allows itself; 0: it keeps every sample
-  int candidates = 0;            ///< further signals that it keeps (logged_candidates)
+  double bad_share = 0.0;   ///< of the samples of each CV that are bad, in the long run
+  double bad_length = 1.0;  ///< mean length of a spell of bad values, samples
+  BadValue bad_value = BadValue::stuck;
+  double bad_size = 20.0;    ///< of a value that is off scale, from the operating point
+  bool bad_quality = false;  ///< the record has their quality, so that its reader leaves them out, as gaps
+  double exception = 0.0;    ///< deviation from the last reported value that is not reported; 0: all are
+  double compression = 0.0;  ///< deviation that the historian allows itself; 0: it keeps every sample
+  int candidates = 0;        ///< further signals that it keeps (logged_candidates)
   double candidate_share = 0.5;  ///< of the disturbed loops in which one of them drives the disturbance
 
   const std::vector<double>& shifts_of(VariableSort sort) const {
@@ -57,7 +74,7 @@ struct RecordOptions {
   /// Does the historian keep anything else of the CVs than what was measured?
   bool alters() const {
     return resamples() || outlier_share > 0.0 || quantisation > 0.0 || missing_share > 0.0 ||
-           compression > 0.0;
+           bad_share > 0.0 || exception > 0.0 || compression > 0.0;
   }
 
   bool operator==(const RecordOptions&) const = default;

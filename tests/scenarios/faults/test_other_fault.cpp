@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -12,6 +13,7 @@
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/fault_draw.hpp"
 #include "scenarios/loop/signals.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
 namespace {
@@ -66,6 +68,81 @@ TEST_CASE("sticky valve: without S and J it is no valve, and a signal within S n
   }
   CHECK_THROWS_AS(StickyValve(-0.1, 0.0, 0.0), InputError);
   CHECK_THROWS_AS(StickyValve(0.1, std::nan(""), 0.0), InputError);
+}
+
+/// Steps of a random walk, as an MV makes them.
+std::vector<double> walk(int steps) {
+  RandomStream stream(5, 0, StreamId::excitation);
+  std::vector<double> u{0.0};
+  for (int k = 0; k < steps; ++k)
+    u.push_back(u.back() + 0.1 * stream.normal());
+  return u;
+}
+
+TEST_CASE("friction valve: it moves where the force exceeds f_S, and until f_D of it is left") {
+  for (const auto& [f_S, f_D] : {std::pair{0.5, 0.2}, {0.5, 0.0}, {0.3, 0.3}}) {
+    FrictionValve valve(f_S, f_D, 0.0);
+    double x = 0.0;
+    int moves = 0;
+    for (const double u : walk(2000)) {
+      const double before = std::exchange(x, valve.follow(u));
+      CHECK(std::abs(u - x) <= f_S + 1e-12);
+      CHECK((x == before) == (std::abs(u - before) <= f_S));
+      if (x == before)
+        continue;
+      ++moves;
+      CHECK(std::abs(u - x) == Approx(f_D).margin(1e-12));
+      CHECK((u - x) * (x - before) >= 0.0);  // the force still points in the direction of the move
+    }
+    CHECK(moves > 20);
+  }
+  CHECK_THROWS_AS(FrictionValve(0.1, 0.2, 0.0), InputError);
+}
+
+TEST_CASE("friction valve: with f_D = 0 that of Stenman et al., with f_D = f_S a deadband") {
+  FrictionValve stenman(0.4, 0.0, 0.0), lagging(0.3, 0.3, 0.0);
+  StickyValve deadband(0.6, 0.0, 0.0);
+  double x = 0.0;
+  bool has_moved = false;  // at first the two stand elsewhere in the band
+  for (const double u : walk(2000)) {
+    x = std::abs(u - x) > 0.4 ? u : x;
+    CHECK(stenman.follow(u) == x);
+    const double a = lagging.follow(u), b = deadband.follow(u);
+    has_moved = has_moved || std::abs(u) > 1.0;
+    if (has_moved)
+      CHECK(a == Approx(b).margin(1e-9));
+  }
+  CHECK(has_moved);
+}
+
+TEST_CASE("valves: from an unknown start the stem stands anywhere that it can, and moves beyond it") {
+  constexpr double kStep = 1e-6;
+  for (const double start : {-1.0, 1.0}) {
+    for (const double towards : {-1.0, 1.0}) {
+      StickyValve sticky(0.5, 0.2, 1.0, start);
+      FrictionValve friction(0.4, 0.1, 1.0, start);
+      const bool breaks_loose = towards * start < 0.0;  // the force grows
+      CHECK((sticky.follow(1.0 + towards * kStep) != 1.0 + start * 0.35) == breaks_loose);
+      CHECK((friction.follow(1.0 + towards * kStep) != 1.0 + start * 0.4) == breaks_loose);
+    }
+  }
+  CHECK(StickyValve(0.5, 0.2, 1.0, 0.3).follow(1.0) == Approx(1.0 + 0.3 * 0.35));
+}
+
+TEST_CASE("other faults: every kind of valve is drawn with a start where a study asks for it") {
+  Study study = find_study("chapter6");
+  study.experiments = {.other = 1};
+  study.other.weight.fill(0.0);
+  for (const OtherFaultKind kind : {OtherFaultKind::stiction, OtherFaultKind::deadband,
+                                    OtherFaultKind::stick_slip, OtherFaultKind::friction})
+    study.other.weight[static_cast<std::size_t>(kind)] = 1.0;
+  const ExperimentDraw known = draw_experiment(study, 7);
+  CHECK(known.other->start == 0.0);
+  study.other.valve_start = ValveStart::unknown;
+  ExperimentDraw unknown = draw_experiment(study, 7);
+  CHECK(unknown.other->start != 0.0);
+  unknown.other->start = 0.0;
+  CHECK(*unknown.other == *known.other);  // from a stream of its own
 }
 
 Study range_study() {
@@ -130,6 +207,19 @@ TEST_CASE("other faults: a held MV stays where it is and the record says so, a v
   CHECK((stuck.y - healthy.y).cwiseAbs().maxCoeff() > 1e-3);
 }
 
+TEST_CASE(
+    "other faults: a stuck sensor shows what it measured at the onset, and the controller believes it") {
+  const Study study = range_study();
+  const Trajectory healthy = simulate_experiment(study, basis_draw(), testing::kFactory);
+  const Trajectory stuck = simulate_experiment(
+      study, draw_of(OtherFaultKind::sensor_stuck, 0, kNaN, {.sample = 40}), testing::kFactory);
+  REQUIRE(stuck.samples_done > 60);
+  const Eigen::Index rest = stuck.samples_done - 40;
+  CHECK(stuck.y.leftCols(41) == healthy.y.leftCols(41));
+  CHECK((stuck.y.row(0).segment(40, rest).array() == healthy.y(0, 40)).all());
+  CHECK(stuck.u.middleCols(41, rest - 1) != healthy.u.middleCols(41, rest - 1));
+}
+
 TEST_CASE("other faults: a changed limit moves the CV that rests on it") {
   const Study study = range_study();
   const Trajectory healthy = simulate_experiment(study, basis_draw(), testing::kFactory);
@@ -153,7 +243,13 @@ TEST_CASE("other faults: what a loop cannot have is never drawn, everything else
     CHECK_FALSE(draw.affected().empty());
     CHECK(draw.affected().front().by == FaultSource::none);
   }
-  CHECK(std::all_of(count.begin(), count.end(), [](int n) { return n > 25; }));
+  // Those that came later are for studies that ask for them.
+  CHECK(std::all_of(count.begin(), count.begin() + 8, [](int n) { return n > 25; }));
+  CHECK(std::all_of(count.begin() + 8, count.end(), [](int n) { return n == 0; }));
+  study.other.weight.fill(1.0);
+  for (std::int64_t i = 0; i < 600; ++i)
+    ++count[static_cast<std::size_t>(draw_experiment(study, i).other->kind)];
+  CHECK(std::all_of(count.begin() + 8, count.end(), [](int n) { return n > 25; }));
   Study setpoints = find_study("setpoint-methods");  // neither MDs nor soft limits
   const auto weights = other_weights(setpoints);
   for (const OtherFaultKind kind : {OtherFaultKind::md_gain, OtherFaultKind::md_noise, OtherFaultKind::limit})

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <catch2/catch.hpp>
 
@@ -125,6 +126,37 @@ TEST_CASE("compression goes from gap to gap", "[historian]") {
   CHECK((y.array().isNaN() == recorded(gaps_alone, 1, loop).y.array().isNaN()).all());
   const auto off = (y - loop.y).array().abs();
   CHECK((y.array().isNaN() || off <= 0.04 + 1e-12).all());
+}
+
+TEST_CASE("exception reporting: a value stays until one differs by more than the deviation", "[historian]") {
+  CHECK(reported(row({0, 0.9, 1.1, 0.2, -1, 0}), 1) == row({0, 0, 1.1, 1.1, -1, -1}));
+  const Trajectory loop = long_record();
+  const Eigen::MatrixXd y = recorded(recording_study("exception = 2\n"), 1, loop).y;
+  CHECK((y - loop.y).row(0).cwiseAbs().maxCoeff() <= 0.02 + 1e-12);
+  CHECK((y.row(1).rightCols(kRecordLength - 1).array() == y.row(1).leftCols(kRecordLength - 1).array())
+            .count() > kRecordLength / 2);
+}
+
+TEST_CASE("bad values: their share, what stands there, and gaps where their quality is known",
+          "[historian]") {
+  const Trajectory loop = long_record();
+  const std::string spells = "bad = {share = 0.1, length = 4";
+  const Eigen::MatrixXd off =
+      recorded(recording_study(spells + ", value = 'off_scale', size = 30}\n"), 1, loop).y;
+  const Eigen::MatrixXd stuck = recorded(recording_study(spells + "}\n"), 1, loop).y;
+  const Eigen::MatrixXd known = recorded(recording_study(spells + ", quality = true}\n"), 1, loop).y;
+  const auto bad = known.array().isNaN();
+  for (Eigen::Index cv = 0; cv < 2; ++cv) {
+    CHECK(static_cast<double>(bad.row(cv).count()) / kRecordLength == Approx(0.1).epsilon(0.2));
+    const double far = 30 * (cv == 0 ? 0.01 : 0.02);
+    for (Eigen::Index k = 0; k < kRecordLength; ++k) {
+      REQUIRE(off(cv, k) == Approx(bad(cv, k) ? far : loop.y(cv, k)));
+      REQUIRE(stuck(cv, k) == (bad(cv, k) && k > 0 ? stuck(cv, k - 1) : loop.y(cv, k)));
+    }
+  }
+  const Study filled =
+      recording_study(spells + ", quality = true}\nmissing = {share = 0.01, fill = 'linear'}\n");
+  CHECK(recorded(filled, 1, loop).y.allFinite());
 }
 
 TEST_CASE("without [record] a loop is recorded as it was measured", "[historian]") {

@@ -12,7 +12,7 @@
 #include "scenarios/loop/historian.hpp"
 #include "scenarios/loop/record_rows.hpp"
 #include "scenarios/loop/signals.hpp"
-#include "scenarios/loop/world.hpp"
+#include "scenarios/study/study_controller.hpp"
 #include "tests/scenarios/study_texts.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
@@ -63,12 +63,22 @@ Study quiet(const std::string& name) {
   return study;
 }
 
+/// The inputs of the plant under which the loop starts, MVs and then `others`.
+Eigen::VectorXd start_of(const Study& study, Eigen::Index others) {
+  const std::unique_ptr<Controller> controller = controller_of(study, study.controller, kFactory);
+  controller->set_setpoints(study.simulation.initial_setpoint);
+  Eigen::VectorXd input = Eigen::VectorXd::Zero(study.mv_count() + others);
+  input.head(study.mv_count()) = controller->nominal_target(Eigen::VectorXd::Zero(study.md_count()));
+  return input;
+}
+
 /// The plant of the loop, simulated finely under the MVs of the loop.
 Eigen::MatrixXd fine_output(const Study& study, const TransferMatrix& plant, const Trajectory& loop) {
   Eigen::MatrixXd inputs(loop.u.rows() + loop.d.rows(), loop.u.cols());
   inputs << loop.u, loop.d;
   const Eigen::MatrixXd fine = fine_inputs(inputs);
   LinearPlant simulated(plant, study.controller.sample_time / static_cast<double>(kFine));
+  simulated.reset(start_of(study, loop.d.rows()));
   Eigen::MatrixXd y(plant.rows(), fine.cols());
   for (Eigen::Index k = 0; k < fine.cols(); ++k) {
     y.col(k) = simulated.output();
@@ -166,9 +176,8 @@ TEST_CASE("rows of a nonlinear plant are those of a fine integration", "[record]
   Study finely = study;
   finely.controller.sample_time /= static_cast<double>(kFine);
   const std::unique_ptr<Plant> plant = experiment_plant(finely, draw);
-  Eigen::VectorXd input = Eigen::VectorXd::Zero(plant->input_count());
-  input.head(loop.u.rows()) = loop.u.col(0);
-  plant->reset(Eigen::VectorXd::Zero(plant->input_count()));
+  Eigen::VectorXd input = start_of(study, plant->input_count() - study.mv_count());
+  plant->reset(input);
   Eigen::MatrixXd fine(loop.y.rows(), loop.u.cols() * kFine + 1);
   for (Eigen::Index k = 0; k < fine.cols(); ++k) {
     fine.col(k) = plant->output();

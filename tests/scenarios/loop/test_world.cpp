@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 
 #include <catch2/catch.hpp>
@@ -15,6 +16,7 @@
 #include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/loop/world.hpp"
+#include "scenarios/study/study_controller.hpp"
 #include "tests/scenarios/study_texts.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
@@ -201,6 +203,55 @@ TEST_CASE("excitation: each loop has steps of its own, listed and in their range
   const ExperimentDraw draw = draw_experiment(study, 1);
   CHECK(simulate_experiment(study, draw, testing::kFactory).y ==
         simulate_experiment(second, draw, testing::kFactory).y);
+}
+
+TEST_CASE("world: a background that swells has the same numbers, at another size along the record",
+          "[world]") {
+  const std::string size = "background = {cv_size = {constant = 1}";
+  const Study steady = world_study(size + "}\n");
+  const Study swells = world_study(size + ", swell = {constant = 9}}\n");
+  const World world = draw_world(swells, 0);
+  CHECK(world.background_swell == 9.0);
+  const Eigen::MatrixXd a = background(steady, draw_world(steady, 0), 3).y_d;
+  const Eigen::MatrixXd b = background(swells, world, 3).y_d;
+  const Eigen::ArrayXXd ratio = b.array() / a.array();
+  CHECK((ratio.row(0) - ratio.row(1)).abs().maxCoeff() < 1e-9);
+  CHECK(ratio.maxCoeff() == Approx(3.0).epsilon(0.01));
+  CHECK(ratio.minCoeff() == Approx(1.0 / 3.0).epsilon(0.01));
+  CHECK(background(swells, world, 4).y_d.cwiseQuotient(background(steady, draw_world(steady, 0), 4).y_d) !=
+        b.cwiseQuotient(a));  // at another time
+}
+
+TEST_CASE("world: a valve with a characteristic gives the plant another gain, and rests where it did",
+          "[world]") {
+  Study study = find_study("wood-berry");
+  study.simulation.noise_standard_deviation.setZero();
+  study.world = WorldRanges{.count = 1, .valve_curvature = Distribution::constant(0.5)};
+  const ExperimentDraw draw = basis_draw(0);
+  const LoopSignals signals = experiment_signals(study, draw);
+  CHECK((signals.valve_curvature.array() == 0.5).all());
+  const Trajectory bent = simulate_experiment(study, draw, testing::kFactory);
+  REQUIRE(bent.status == ControlStatus::ok);
+  const std::unique_ptr<Controller> controller = controller_of(study, study.controller, testing::kFactory);
+  const Eigen::VectorXd rest = controller->nominal_target(Eigen::VectorXd::Zero(study.md_count()));
+  // The plant had f(u) of what the record shows.
+  const Limits& hard = study.controller.mv_hard;
+  Eigen::MatrixXd inputs(bent.u.rows() + bent.d.rows(), bent.u.cols());
+  inputs << bent.u, bent.d;
+  for (Eigen::Index mv = 0; mv < bent.u.rows(); ++mv) {
+    const double a = hard.lower(mv), b = hard.upper(mv);
+    const auto added = [&](double u) { return 0.5 * (u - a) * (b - u) / (b - a); };
+    for (Eigen::Index k = 0; k < bent.u.cols(); ++k)
+      inputs(mv, k) += added(bent.u(mv, k)) - added(rest(mv));
+  }
+  LinearPlant plant(study.plant.G, study.controller.sample_time);
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(inputs.rows());
+  start.head(rest.size()) = rest;
+  plant.reset(start);
+  for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
+    CHECK((plant.output() - bent.y.col(k)).cwiseAbs().maxCoeff() < 1e-9);
+    plant.advance(inputs.col(k));
+  }
 }
 
 }  // namespace mpm
