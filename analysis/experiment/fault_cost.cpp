@@ -20,14 +20,19 @@ namespace {
 struct Side {
   Eigen::VectorXd variance, loss, violation;
   std::vector<double> total;
+  std::vector<std::vector<double>> cv_cost;  ///< of each CV, pair by pair
   double effort = 0.0, economics = 0.0;
 
   explicit Side(Eigen::Index ny)
       : variance(Eigen::VectorXd::Zero(ny)),
         loss(Eigen::VectorXd::Zero(ny)),
-        violation(Eigen::VectorXd::Zero(ny)) {}
+        violation(Eigen::VectorXd::Zero(ny)),
+        cv_cost(static_cast<std::size_t>(ny)) {}
 
-  void add(const Study& study, const Trajectory& loop) {
+  void add(const Study& study, const Trajectory& loop, Eigen::Index onset) {
+    const Eigen::VectorXd of_cvs = cv_costs(study, loop.y, loop.y_set, onset) + cost_floor(study);
+    for (Eigen::Index cv = 0; cv < of_cvs.size(); ++cv)
+      cv_cost[static_cast<std::size_t>(cv)].push_back(of_cvs(cv));
     variance += variances(loop.y, variance_centres(study, 0, loop.y.cols()));
     const LoopCost cost = loop_cost(study, loop);
     loss += cost.cv;
@@ -40,9 +45,10 @@ struct Side {
 
 }  // namespace
 
-bool FaultCost::has_impact(double upper) const {
-  return loss_ratio > upper || std::any_of(variance_ratio.begin(), variance_ratio.end(),
-                                           [upper](double ratio) { return ratio > upper; });
+bool FaultCost::has_impact(double upper, ImpactMeasure measure) const {
+  const Eigen::VectorXd& ratios = measure == ImpactMeasure::cost ? cost_ratio : variance_ratio;
+  return loss_ratio > upper ||
+         std::any_of(ratios.begin(), ratios.end(), [upper](double ratio) { return ratio > upper; });
 }
 
 std::int64_t pilot_noise(const Study& study, const ExperimentDraw& draw, int loops, int loop) {
@@ -55,7 +61,11 @@ std::int64_t pilot_noise(const Study& study, const ExperimentDraw& draw, int loo
 FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
                      const QpSolverFactory& factory, SolverStatistics& pilots, PilotCosts* costs) {
   const Eigen::Index ny = study.cv_count();
-  FaultCost cost{Eigen::VectorXd::Ones(ny), Eigen::VectorXd::Zero(ny), Eigen::VectorXd::Zero(ny)};
+  FaultCost cost{.variance_ratio = Eigen::VectorXd::Ones(ny),
+                 .loss = Eigen::VectorXd::Zero(ny),
+                 .violation = Eigen::VectorXd::Zero(ny),
+                 .cost_ratio = Eigen::VectorXd::Ones(ny),
+                 .cost_ratio_error = Eigen::VectorXd::Zero(ny)};
   if (is_faultless(draw.kind))
     return cost;
   const Study moved = with_excitation(study, draw.index);
@@ -69,10 +79,10 @@ FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
     pilots.add(b.solver);
     if (a.status != ControlStatus::ok || b.status != ControlStatus::ok) {
       const Eigen::VectorXd none = Eigen::VectorXd::Constant(ny, kNaN);
-      return {none, none, none, kNaN, kNaN, kNaN, kNaN};
+      return {none, none, none, kNaN, kNaN, kNaN, kNaN, none, none};
     }
-    with.add(moved, a);
-    without.add(moved, b);
+    with.add(moved, a, draw.onset.sample);
+    without.add(moved, b, draw.onset.sample);
   }
   const double n = pairs;
   cost.variance_ratio = with.variance.cwiseQuotient(without.variance);
@@ -81,6 +91,12 @@ FaultCost fault_cost(const Study& study, const ExperimentDraw& draw, int pairs,
   cost.effort = (with.effort - without.effort) / n;
   cost.economics = (with.economics - without.economics) / n;
   const RatioOfMeans ratio = ratio_of_means(with.total, without.total);
+  for (Eigen::Index cv = 0; cv < ny; ++cv) {
+    const auto place = static_cast<std::size_t>(cv);
+    const RatioOfMeans of_cv = ratio_of_means(with.cv_cost[place], without.cv_cost[place]);
+    cost.cost_ratio(cv) = of_cv.value;
+    cost.cost_ratio_error(cv) = of_cv.error;
+  }
   cost.loss_ratio = ratio.value;
   cost.error = ratio.error;
   if (costs != nullptr)

@@ -23,12 +23,16 @@ namespace mpm {
 /// | loss_ratio     |      | E of LoopCost::total() with it over that without it                  |
 /// | error          |      | standard error of loss_ratio: delta method over the pairs of loops   |
 /// | effort, economics |   | differences, as loss                                                 |
+/// | cost_ratio     | ny   | E of cv_costs() with it over that without it, each with cost_floor(), from the
+/// onset on | | cost_ratio_error | ny | its standard error, as `error` |
 struct FaultCost {
   Eigen::VectorXd variance_ratio, loss, violation;
   double loss_ratio = 1.0, error = 0.0, effort = 0.0, economics = 0.0;
+  Eigen::VectorXd cost_ratio = {}, cost_ratio_error = {};
 
-  /// Is the model worse than it was: does a variance or the cost of the loop rise above `upper` times itself?
-  bool has_impact(double upper) const;
+  /// Is the model worse than it was: does the cost of the loop, or a variance or the cost of a CV, whichever
+  /// is the measure, rise above `upper` times itself?
+  bool has_impact(double upper, ImpactMeasure measure = ImpactMeasure::variance) const;
 };
 
 /// The costs, LoopCost::total(), of the pilot loops of an experiment, loop by loop.

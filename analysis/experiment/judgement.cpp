@@ -117,7 +117,7 @@ Judgement judge(const Study& study, const ExperimentRecord& record, const Assess
 
 bool has_impact(const DiagnosisOptions& options, const ExperimentRecord& record) {
   if (record.cost)
-    return record.cost->has_impact(options.impact_upper);
+    return record.cost->has_impact(options.impact_upper, options.impact);
   return std::any_of(record.ivar_basis.begin(), record.ivar_basis.end(),
                      [&](double ivar) { return options.has_impact(ivar); });
 }

@@ -16,6 +16,32 @@ double outside(double y, double lower, double upper) {
 
 }  // namespace
 
+Eigen::VectorXd cv_costs(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                         const Eigen::Ref<const Eigen::MatrixXd>& y_set, Eigen::Index first) {
+  const MpcOptions& controller = study.controller;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(y.rows()), count = sum;
+  for (Eigen::Index k = first; k < y.cols(); ++k) {
+    const Limits soft = soft_limits(study, k);
+    for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
+      if (is_off(study, VariableSort::cv, cv, k) || std::isnan(y(cv, k)))
+        continue;
+      const double off = controller.has_setpoint(cv) ? y(cv, k) - y_set(cv, k)
+                                                     : outside(y(cv, k), soft.lower(cv), soft.upper(cv));
+      sum(cv) += off * off;
+      count(cv) += 1.0;
+    }
+  }
+  return sum.cwiseQuotient(count);
+}
+
+Eigen::VectorXd cost_floor(const Study& study) {
+  Eigen::VectorXd floor = study.simulation.noise_standard_deviation.cwiseAbs2();
+  for (Eigen::Index cv = 0; cv < floor.size(); ++cv)
+    if (study.controller.has_setpoint(cv))
+      floor(cv) = 0.0;
+  return floor;
+}
+
 LoopCost loop_cost(const Study& study, const Trajectory& loop) {
   const MpcOptions& controller = study.controller;
   const Eigen::Index ny = loop.y.rows(), N = loop.y.cols();

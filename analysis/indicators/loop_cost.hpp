@@ -26,4 +26,20 @@ struct LoopCost {
 /// The cost of a loop of `study`, whose status must be ok.
 LoopCost loop_cost(const Study& study, const Trajectory& loop);
 
+/// What each CV costs as its controller has it, without weights, ny: the mean over the samples from `first`
+/// on of (y - y_set)^2 for a CV with a setpoint, and of the squared distance outside of its soft limits for
+/// any other, in the unit of the CV squared. Samples at which the CV is off or missing (NaN) do not count;
+/// NaN without any. For simulated loops and for records.
+///
+/// | symbol | name  | shape  | unit                              |
+/// |--------|-------|--------|-----------------------------------|
+/// | y      | y     | ny x N | of the CV                         |
+/// | y_set  | y_set | ny x N | empty where no CV has a setpoint  |
+Eigen::VectorXd cv_costs(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
+                         const Eigen::Ref<const Eigen::MatrixXd>& y_set, Eigen::Index first = 0);
+
+/// What is added to both costs before they are compared, ny: of a CV without a setpoint, which costs nothing
+/// within its limits, the variance of its noise; of one with a setpoint, which has its noise in its cost, 0.
+Eigen::VectorXd cost_floor(const Study& study);
+
 }  // namespace mpm

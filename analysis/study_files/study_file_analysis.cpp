@@ -148,6 +148,10 @@ OptionKeys diagnosis_keys(DiagnosisOptions& options, ChainOptions& chain) {
   return {
       key::band("impact_band", options.impact_lower, options.impact_upper, positive,
                 "an experiment with an Ivar (6.7) outside is impactful (section 6.5.2)", "1"),
+      key::choice(
+          "impact", options.impact,
+          "by what a fault has an impact in a world, beside the cost of the whole loop: the variance of "
+          "a CV, or its cost as the controller has it, from the onset on (`cost_ratio` of the archive)"),
       key::choice("variance_centre", options.variance_centre, {"setpoint", "mean"},
                   "what the variances of a CV with a setpoint are taken about, (3.24) or "
                   "(2.20); those of a CV in a range are taken about its mean"),

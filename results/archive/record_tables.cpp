@@ -285,7 +285,7 @@ std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
   const auto of_cv = [&](NumberText text, Eigen::VectorXd C::*member) {
     return vector_row<C>(std::move(text), "cv", study.cv_count(), member);
   };
-  return {
+  std::vector<Row<FaultCost>> rows{
       of_cv({"loss", "what the fault adds to the cost of the CV in the weights of the controller", "1", same},
             &C::loss),
       of_cv({"violation", "what the fault adds to the mean distance outside the soft limits",
@@ -302,6 +302,18 @@ std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
       member_row<double>(
           {"economics", "what the fault adds to the objective of the target optimizer", "1", same},
           &C::economics)};
+  if (study.diagnosis.impact == ImpactMeasure::cost)
+    append<FaultCost>(
+        {of_cv({"cost_ratio",
+                "cost of the CV as its controller has it, from the onset on, over that without the fault: "
+                "squared distance from the setpoint, or outside of the soft limits with the variance of the "
+                "noise",
+                "1", same},
+               &C::cost_ratio),
+         of_cv({"cost_ratio_error", "standard error of cost_ratio", "1", "NaN: as loss_ratio_error"},
+               &C::cost_ratio_error)},
+        rows);
+  return rows;
 }
 
 /// The channels of some inputs in a matrix of RepairGains, `count` of them from column `first` on.
@@ -598,7 +610,8 @@ RecordTable perturbed(const Study& study) {
                                 perturbed, solver, kept, known] = record;
   [[maybe_unused]] const auto& [gain, gain_error] = repair;
   if (cost) {
-    [[maybe_unused]] const auto& [ratio, loss, violation, loss_ratio, error, effort, economics] = *cost;
+    [[maybe_unused]] const auto& [ratio, loss, violation, loss_ratio, error, effort, economics, cost_ratio,
+                                  cost_ratio_error] = *cost;
   }
   [[maybe_unused]] const auto& [radius, other_cv, mv] = conditions;
   [[maybe_unused]] const auto& [form, ended, reason, flagged, score, cv, source, numbers, milliseconds] =

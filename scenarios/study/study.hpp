@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "base/enum_words.hpp"
 #include "plants/linear/plant_model.hpp"
 #include "plants/nonlinear/nonlinear_model.hpp"
 #include "plants/nonlinear/ode_integrator.hpp"
@@ -124,10 +125,18 @@ enum class SelfCheck {
   none,
 };
 
+/// By what a fault has an impact in a world: the variance of a CV, or its cost as the controller has it
+/// (cv_costs()). The cost of the whole loop counts with either.
+enum class ImpactMeasure : std::int8_t { variance, cost };
+
+template <>
+inline constexpr auto kWords<ImpactMeasure> = word_list("variance", "cost");
+
 /// The open choices of the diagnosis chain.
 struct DiagnosisOptions {
   double impact_lower = 0.8;  ///< Ivar outside [impact_lower, impact_upper] is impactful
   double impact_upper = 1.2;
+  ImpactMeasure impact = ImpactMeasure::variance;
   VarianceCentre variance_centre = VarianceCentre::setpoint;  ///< (3.24), (4.14); mean: (2.20)
   LocationDistance location_distance = LocationDistance::linear;
   double shortest_window = 0.5;  ///< of the moving windows, in prediction horizons

@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/experiment/fault_cost.hpp"
+#include "analysis/indicators/loop_cost.hpp"
 #include "analysis/study_files/study_library.hpp"
+#include "base/non_finite.hpp"
 #include "scenarios/loop/draw.hpp"
 #include "scenarios/loop/world.hpp"
 #include "tests/solvers/active_set_factory.hpp"
@@ -95,6 +97,42 @@ TEST_CASE("cost of a fault: signs are kept, and without a fault there is none", 
   less.variance_ratio(1) = 1.0;
   less.loss_ratio = 1.3;
   CHECK(less.has_impact(1.2));
+}
+
+TEST_CASE("cost of a CV: about the setpoint or outside of the limits, from the onset on", "[fault_cost]") {
+  Study study = find_study("wood-berry");
+  study.simulation.samples = 4;
+  study.simulation.limit_steps.clear();
+  study.controller.cv_soft = Limits::none(2);
+  study.controller.cv_soft.upper(1) = 1.0;
+  study.controller.setpoint_weight = Eigen::Vector2d(2.0, 0.0);
+  const Eigen::MatrixXd y = (Eigen::MatrixXd(2, 4) << 9, 1, 2, kNaN, 9, 3, 1, -5).finished();
+  const Eigen::MatrixXd y_set = (Eigen::MatrixXd(2, 4) << 0, 0, 4, 0, 0, 0, 0, 0).finished();
+  const Eigen::VectorXd cost = cv_costs(study, y, y_set, 1);
+  CHECK(cost(0) == Approx((1.0 + 4.0) / 2.0));  // two samples are there
+  CHECK(cost(1) == Approx((4.0 + 0.0 + 0.0) / 3.0));
+  CHECK(cost_floor(study)(0) == 0.0);
+  CHECK(cost_floor(study)(1) == Approx(std::pow(study.simulation.noise_standard_deviation(1), 2)));
+}
+
+TEST_CASE("cost of a fault: movement of the setpoint, which hides a fault in a variance, is not in its cost",
+          "[fault_cost]") {
+  Study study = quiet_study();
+  study.simulation.setpoint_steps = {{0, 20, 0.01}, {0, 110, -0.01}};
+  study.diagnosis.variance_centre = VarianceCentre::mean;
+  ExperimentDraw draw = gain_fault(0.4);
+  draw.onset.sample = 150;
+  SolverStatistics pilots;
+  const FaultCost cost = fault_cost(study, draw, 20, testing::kFactory, pilots);
+  INFO(cost.variance_ratio.transpose() << " and " << cost.cost_ratio.transpose());
+  CHECK(std::abs(std::log(cost.cost_ratio(0))) > std::abs(std::log(cost.variance_ratio(0))));
+  CHECK((cost.cost_ratio_error.array() > 0.0).all());
+  FaultCost worse = cost;
+  worse.loss_ratio = 1.0;
+  worse.variance_ratio.setOnes();
+  worse.cost_ratio = Eigen::Vector3d(1.0, 1.3, 1.0);
+  CHECK_FALSE(worse.has_impact(1.2));
+  CHECK(worse.has_impact(1.2, ImpactMeasure::cost));
 }
 
 TEST_CASE("cost of a loop: setpoints, soft limits, moves and economics in the weights of the controller",
