@@ -40,12 +40,22 @@ struct CalibratedThreshold {
   bool exceeded_by(double score) const { return value && score > *value; }
 };
 
+/// How often a threshold is drawn anew: as often as a letter of a board can count.
+inline constexpr int kRedraws = 63;
+
 /// The calibrated thresholds of one method.
 struct CalibratedThresholds {
   CalibratedThreshold at_01;    ///< 1 % of the healthy loops flagged at most
   CalibratedThreshold at_05;    ///< 5 %
   CalibratedThreshold chosen;   ///< calibration.false_alarms of the study
   CalibratedThreshold not_mpm;  ///< 5 % of the healthy loops and of those with a disturbance alone, together
+  /// In worlds `at_05` of kRedraws samples of the calibration worlds, with replacement, in ascending order:
+  /// what other calibration loops would have made of it. Infinite where a sample has too few loops; empty
+  /// without worlds, or without `at_05`.
+  std::vector<double> redrawn_05 = {};
+
+  /// How many of `redrawn_05` the score exceeds.
+  int redraws_exceeded_by(double score) const;
 };
 
 /// Those of the method in place `method`; all without a value when there are no loops. The study must have a

@@ -38,12 +38,17 @@ PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, doub
   }
   for (const RateRow& row : rate_rows()) {
     std::vector<std::vector<ClusterCount>> strata;  // the worlds of each cell
+    double further = 0.0, total = 0.0;
     for (const MethodScores* const scores : of_cells) {
       const Rate& rate = scores->rates.of(row);
       strata.push_back(rate.clusters.empty() ? std::vector<ClusterCount>{{rate.hits, rate.total}}
                                              : rate.clusters);
+      const auto trials = static_cast<double>(rate.total);  // each cell has a threshold of its own
+      further += trials * trials * rate.further_variance;
+      total += trials;
     }
-    pooled.rates.of(row) = clustered_rate(strata, confidence);
+    pooled.rates.of(row) =
+        clustered_rate(strata, confidence, further > 0.0 ? further / (total * total) : 0.0);
   }
   for (const EstimateRow& row : estimate_rows()) {
     std::vector<std::vector<ClusterSum>> strata;

@@ -5,6 +5,7 @@
 
 #include "analysis/findings/world_counts.hpp"
 #include "analysis/methods/assessment_method.hpp"
+#include "analysis/statistics/holm.hpp"
 
 namespace mpm {
 namespace {
@@ -37,7 +38,9 @@ BoardDuel board_duel(const Leaderboard& board, const RateRow& rate, std::size_t 
   }
   BoardDuel found{.other = other, .loops = pooled_counts(clusters).total()};
   if (found.loops > 0)
-    found.difference = clustered_difference(clusters, board.confidence);
+    found.difference = clustered_difference(clusters, board.confidence,
+                                            board.overall[method].rates.of(rate).further_variance +
+                                                board.overall[other].rates.of(rate).further_variance);
   return found;
 }
 
@@ -79,6 +82,12 @@ std::optional<Standing> standing_of(const Leaderboard& board, std::size_t method
         standing.duels.push_back(found);
   if (standing.duels.empty())
     return std::nullopt;
+  std::vector<double> p;
+  for (const BoardDuel& each : standing.duels)
+    p.push_back(each.difference.p);
+  const std::vector<double> corrected = holm_adjusted(p);
+  for (std::size_t i = 0; i < corrected.size(); ++i)
+    standing.duels[i].p_holm = corrected[i];
   std::stable_sort(standing.duels.begin(), standing.duels.end(), [](const BoardDuel& a, const BoardDuel& b) {
     return a.difference.value < b.difference.value;
   });

@@ -12,16 +12,20 @@
 
 namespace mpm {
 
+/// All duels of a method together call one that is equally good better or worse so often at most.
+inline constexpr double kDuelSignificance = 0.05;
+
 /// A method against another one on the same loops of a leaderboard.
 struct BoardDuel {
   std::size_t other = 0;  ///< place in Leaderboard::methods
   std::int64_t loops = 0;
   /// The share of the method minus that of the other one: clustered_difference() of the worlds of each cell,
-  /// or of the cells where there are no worlds.
+  /// or of the cells where there are no worlds, with what the calibrated thresholds of both leave open.
   ShareDifference difference = {};
+  double p_holm = 1.0;  ///< difference.p corrected for the duels of a method (Holm 1979)
 
-  bool won() const { return difference.interval.lower > 0; }
-  bool lost() const { return difference.interval.upper < 0; }
+  bool won() const { return difference.value > 0 && p_holm < kDuelSignificance; }
+  bool lost() const { return difference.value < 0 && p_holm < kDuelSignificance; }
 };
 
 /// Where a method stands on a leaderboard, at equal false alarms: at the threshold that is calibrated for 5 %

@@ -29,14 +29,23 @@ bool judged(Correctness verdict) {
 
 std::vector<OutcomeFact> outcome_facts() {
   return {
-      yes_or_no<&LoopOutcome::answered>(),     yes_or_no<&LoopOutcome::flagged>(),
-      yes_or_no<&LoopOutcome::above_05>(),     yes_or_no<&LoopOutcome::above_chosen>(),
-      yes_or_no<&LoopOutcome::right_cv>(),     yes_or_no<&LoopOutcome::right_source>(),
-      yes_or_no<&LoopOutcome::above_01>(),     yes_or_no<&LoopOutcome::above_not_mpm>(),
-      yes_or_no<&LoopOutcome::names_source>(), verdict<&LoopOutcome::channel>(),
-      verdict<&LoopOutcome::parameter>(),      verdict<&LoopOutcome::size>(),
-      verdict<&LoopOutcome::candidate>(),      verdict<&LoopOutcome::window>(),
+      yes_or_no<&LoopOutcome::answered>(),
+      yes_or_no<&LoopOutcome::flagged>(),
+      yes_or_no<&LoopOutcome::above_05>(),
+      yes_or_no<&LoopOutcome::above_chosen>(),
+      yes_or_no<&LoopOutcome::right_cv>(),
+      yes_or_no<&LoopOutcome::right_source>(),
+      yes_or_no<&LoopOutcome::above_01>(),
+      yes_or_no<&LoopOutcome::above_not_mpm>(),
+      yes_or_no<&LoopOutcome::names_source>(),
+      verdict<&LoopOutcome::channel>(),
+      verdict<&LoopOutcome::parameter>(),
+      verdict<&LoopOutcome::size>(),
+      verdict<&LoopOutcome::candidate>(),
+      verdict<&LoopOutcome::window>(),
       verdict<&LoopOutcome::mismatch>(),
+      {6, [](const LoopOutcome& said) { return unsigned{said.redrawn_05}; },
+       [](LoopOutcome& said, unsigned number) { said.redrawn_05 = static_cast<std::uint8_t>(number); }},
   };
 }
 
@@ -55,6 +64,7 @@ OutcomeScope outcome_scope(const Study& study, const MethodDescription& method,
           .in_worlds = study.world.has_value(),
           .at_01 = thresholds.at_01.value.has_value(),
           .at_not_mpm = thresholds.not_mpm.value.has_value(),
+          .chosen_is_05 = study.calibration && study.calibration->false_alarms == 0.05,
           .is_whole = true};
 }
 
@@ -70,8 +80,9 @@ bool is_possible(const LoopOutcome& said, const FaultTruth& truth, const Outcome
                                         !judged(said.candidate) && !judged(said.window));
   const bool right = said.flagged || (!judged_rightly(said.channel) && !judged_rightly(said.parameter) &&
                                       !judged(said.candidate));
+  const bool redrawn = said.redrawn_05 == 0 || (scope.at_05 && scope.in_worlds);
   const bool of_model = (truth.has_mismatch() || truth.kind == ExperimentKind::ud) && scope.tells_sources;
-  return above && named && judged(said.mismatch) <= of_model && asked && right &&
+  return above && redrawn && named && judged(said.mismatch) <= of_model && asked && right &&
          judged(said.size) <= judged_rightly(said.parameter) && judged(said.window) <= truth.impact;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -43,6 +44,8 @@ struct LoopOutcome {
   /// The source that it would name if it flagged the loop has a mismatch where the fault has one, and has
   /// none where the fault is a disturbance alone.
   Correctness mismatch = {};
+  /// CalibratedThresholds::redraws_exceeded_by() its score: what `above_05` would be under other thresholds.
+  std::uint8_t redrawn_05 = 0;
 
   bool operator==(const LoopOutcome&) const = default;
 };
@@ -69,9 +72,10 @@ struct OutcomeScope {
   bool at_05 = false;      ///< it has the threshold calibrated for 5 %
   bool at_chosen = false;  ///< that for calibration.false_alarms
   bool in_worlds = false;
-  bool at_01 = false;       ///< it has the threshold calibrated for 1 %
-  bool at_not_mpm = false;  ///< that for 5 % among loops without a mismatch
-  bool is_whole = false;    ///< all facts are known; otherwise those up to LoopOutcome::right_source
+  bool at_01 = false;         ///< it has the threshold calibrated for 1 %
+  bool at_not_mpm = false;    ///< that for 5 % among loops without a mismatch
+  bool chosen_is_05 = false;  ///< calibration.false_alarms are 5 %
+  bool is_whole = false;      ///< all facts are known; otherwise those up to LoopOutcome::right_source
 };
 
 FaultTruth truth_of(const Study& study, const ExperimentRecord& record);

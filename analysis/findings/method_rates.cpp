@@ -14,6 +14,7 @@
 #include "analysis/experiment/repair.hpp"
 #include "analysis/findings/monitored_loop.hpp"
 #include "analysis/findings/world_counts.hpp"
+#include "analysis/statistics/least_effect.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -26,6 +27,7 @@ struct LoopMeasures {
   /// Of the loops with a fault that has an impact, or none, and of the healthy ones.
   std::vector<double> impact_scores, no_impact_scores, healthy_scores;
   std::vector<double> milliseconds, channels_named, size_errors;
+  std::vector<EffectTrial> effects;  ///< of the faults, and whether they are above the threshold for 5 %
 };
 
 namespace {
@@ -78,7 +80,8 @@ LoopOutcome SeenLoop::outcome() const {
       .channel = judgement.channel,
       .parameter = judgement.parameter,
       .size = judgement.size,
-      .candidate = judgement.candidate};
+      .candidate = judgement.candidate,
+      .redrawn_05 = static_cast<std::uint8_t>(thresholds.redraws_exceeded_by(said.score))};
   if (method.tells_sources && (truth.has_mismatch() || truth.kind == ExperimentKind::ud)) {
     const FaultSource named = said.predicted_source;
     const bool says_so = named == FaultSource::mpm || named == FaultSource::mpm_ud;
@@ -122,6 +125,9 @@ void SeenLoop::measure_repair(LoopMeasures& all) const {
 }
 
 void SeenLoop::measure_fault(LoopMeasures& all) const {
+  if (study.world && thresholds.at_05.value && record.cost && !record.cost->variance_ratio.hasNaN())
+    all.effects.push_back({(record.cost->variance_ratio.array() - 1.0).abs().maxCoeff(),
+                           thresholds.at_05.exceeded_by(said.score), record.draw.world});
   (truth.impact ? all.impact_scores : all.no_impact_scores).push_back(said.score);
   if (said.flagged && judgement.channel != Correctness::not_judged)
     all.channels_named.push_back(said.values("channel_flagged").sum());
@@ -141,7 +147,7 @@ Estimate alarms_a_day(const Study& study, const LoopMeasures& counts) {
   return alarms;
 }
 
-constexpr std::array<EstimateRow, 6> kEstimates{{
+constexpr std::array<EstimateRow, 7> kEstimates{{
     {{"channels_named", "Channels named, mean",
       "mean number of channels named, over the flagged loops with one mismatch of an MV", true},
      [](const LoopMeasures& of, const Study&) { return mean_estimate(of.channels_named); },
@@ -167,6 +173,14 @@ constexpr std::array<EstimateRow, 6> kEstimates{{
       false, StudyFeature::calibrated_worlds},
      [](const LoopMeasures& of, const Study& study) {
        return of.repair_gain_share_05.mean(study.aggregate.confidence);
+     }},
+    {{"least_effect_80", "Least effect, 80 % found",
+      "least change of the variance of a CV, as a share of it, from which on 80 % of the faults are above "
+      "the "
+      "threshold calibrated for 5 % false alarms; infinite if no faults are found so often",
+      true, StudyFeature::calibrated_worlds},
+     [](const LoopMeasures& of, const Study& study) {
+       return least_effect(of.effects, 0.8, study.aggregate.confidence, study.seed);
      }},
     {{"detection_delay", "Delay, median",
       "median time from the onset to the end of the first flagged window, in the time unit of the plant, "

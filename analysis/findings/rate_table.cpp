@@ -1,6 +1,8 @@
 #include "analysis/findings/rate_table.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace mpm {
 namespace {
@@ -203,16 +205,52 @@ std::span<const RateRow> rate_rows() {
   return kRates;
 }
 
+void RedrawnShare::add(bool below, bool above, int exceeded) {
+  ++total_;
+  below_ += below ? 1 : 0;
+  changes_[static_cast<std::size_t>(exceeded)] += static_cast<int>(above) - static_cast<int>(below);
+}
+
+double RedrawnShare::variance() const {
+  if (total_ == 0)
+    return 0.0;
+  const auto n = static_cast<double>(total_);
+  // A loop that exceeds k of the thresholds in ascending order is above the first k of them.
+  std::int64_t hits = below_;
+  for (const std::int64_t change : changes_)
+    hits += change;
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t threshold = 0; threshold < kRedraws; ++threshold) {
+    hits -= changes_[threshold];
+    const double share = static_cast<double>(hits) / n;
+    sum += share;
+    squares += share * share;
+  }
+  return std::max(0.0, (squares - sum * sum / kRedraws) / (kRedraws - 1));
+}
+
 void RateCounts::add(const JudgedLoop& loop, int world) {
+  const bool redraws = loop.scope.in_worlds && loop.scope.at_05 && loop.scope.is_whole;
+  LoopOutcome below = loop.said, above = loop.said;
+  below.above_05 = false;
+  above.above_05 = true;
+  if (loop.scope.chosen_is_05) {
+    below.above_chosen = false;
+    above.above_chosen = true;
+  }
   for (const RateRow& row : counts_.rows())
-    if (const std::optional<bool> hit = row.ask(loop))
+    if (const std::optional<bool> hit = row.ask(loop)) {
       counts_.of(row).add(world, *hit);
+      if (redraws)
+        redrawn_.of(row).add(row.hit({loop.scope, loop.truth, below}),
+                             row.hit({loop.scope, loop.truth, above}), loop.said.redrawn_05);
+    }
 }
 
 Rates RateCounts::rates(double confidence) const {
   Rates rates(counts_.rows());
   for (const RateRow& row : counts_.rows())
-    rates.of(row) = counts_.of(row).rate(confidence);
+    rates.of(row) = counts_.of(row).rate(confidence, redrawn_.of(row).variance());
   return rates;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -98,16 +99,31 @@ struct Rates : RowValues<RateRow, Rate> {
   explicit Rates(std::span<const RateRow> rows = rate_rows()) : RowValues(rows) {}
 };
 
+/// What a rate would be under each of the redrawn thresholds (CalibratedThresholds::redrawn_05).
+class RedrawnShare {
+ public:
+  /// A loop that counts: a hit below the threshold, above it, and how many of the thresholds it exceeds.
+  void add(bool below, bool above, int exceeded);
+  /// Of the share between thresholds, (sum of squares about the mean) / (kRedraws - 1); 0 where no threshold
+  /// matters.
+  double variance() const;
+
+ private:
+  std::int64_t below_ = 0, total_ = 0;
+  std::array<std::int64_t, kRedraws + 1> changes_ = {};  ///< above minus below, by the thresholds exceeded
+};
+
 /// Counts the loops of each rate, by world.
 class RateCounts {
  public:
-  explicit RateCounts(std::span<const RateRow> rows = rate_rows()) : counts_(rows) {}
+  explicit RateCounts(std::span<const RateRow> rows = rate_rows()) : counts_(rows), redrawn_(rows) {}
 
   void add(const JudgedLoop& loop, int world);
   Rates rates(double confidence) const;
 
  private:
   RowValues<RateRow, WorldCount> counts_;
+  RowValues<RateRow, RedrawnShare> redrawn_;
 };
 
 }  // namespace mpm

@@ -39,7 +39,10 @@ class WorldCount {
     count.total += more.total;
     count.hits += more.hits;
   }
-  Rate rate(double confidence) const { return clustered_rate(counts_.all(), confidence); }
+  /// `further_variance` as in Rate.
+  Rate rate(double confidence, double further_variance = 0.0) const {
+    return clustered_rate(counts_.all(), confidence, further_variance);
+  }
 
  private:
   OfWorlds<ClusterCount> counts_;

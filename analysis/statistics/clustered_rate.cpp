@@ -59,7 +59,10 @@ void require_sums(std::span<const std::vector<ClusterSum>> strata) {
 
 }  // namespace
 
-Estimate clustered_mean(std::span<const std::vector<ClusterSum>> strata, double confidence) {
+namespace {
+
+/// clustered_mean() with a variance of the mean for another reason.
+Estimate mean_with(std::span<const std::vector<ClusterSum>> strata, double confidence, double further) {
   require_sums(strata);
   double hits = 0.0, variance = 0.0;
   std::int64_t total = 0, freedom = 0;
@@ -80,14 +83,23 @@ Estimate clustered_mean(std::span<const std::vector<ClusterSum>> strata, double 
   double trials = n;
   if (freedom > 0) {
     const double t = two_sided_student_quantile(confidence, freedom);
-    const double independent = variance > 0.0 ? mean.value * (1.0 - mean.value) * n * n / variance : n;
+    const double p = further > 0.0 ? (hits + 0.5) / (n + 1.0) : mean.value;
+    variance += further * n * n;
+    const double independent = variance > 0.0 ? p * (1.0 - p) * n * n / variance : n;
     trials = std::min(n, independent * z * z / (t * t));
   }
   mean.interval = score_interval(mean.value, trials, confidence);
   return mean;
 }
 
-Rate clustered_rate(std::span<const std::vector<ClusterCount>> strata, double confidence) {
+}  // namespace
+
+Estimate clustered_mean(std::span<const std::vector<ClusterSum>> strata, double confidence) {
+  return mean_with(strata, confidence, 0.0);
+}
+
+Rate clustered_rate(std::span<const std::vector<ClusterCount>> strata, double confidence,
+                    double further_variance) {
   std::int64_t hits = 0, total = 0;
   bool several = false;
   std::vector<std::vector<ClusterSum>> sums;
@@ -102,12 +114,13 @@ Rate clustered_rate(std::span<const std::vector<ClusterCount>> strata, double co
   }
   Rate all = rate(hits, total, confidence);
   if (several)
-    all.interval = clustered_mean(sums, confidence).interval;
+    all.interval = mean_with(sums, confidence, further_variance).interval;
+  all.further_variance = further_variance;
   return all;
 }
 
-Rate clustered_rate(std::vector<ClusterCount> clusters, double confidence) {
-  Rate all = clustered_rate(std::span(&clusters, 1), confidence);
+Rate clustered_rate(std::vector<ClusterCount> clusters, double confidence, double further_variance) {
+  Rate all = clustered_rate(std::span(&clusters, 1), confidence, further_variance);
   all.clusters = std::move(clusters);
   return all;
 }

@@ -26,11 +26,17 @@ namespace mpm {
 /// small expected number of positive counts estimated from survey data", Survey Methodology 24, 193-201, with
 /// Wilson's interval. Without scatter (all hits, or none) n* is n. Where no stratum has two clusters it is
 /// rate().
+///
+/// `further_variance` is that of p for another reason, such as a threshold that was estimated. It is added to
+/// v, and p of p (1 - p) is then that of half a hit and half a miss more, so that n* is not 0 where all are
+/// hits.
 /// @throws InputError unless 0 <= hits <= total in each cluster and 0 < confidence < 1
-Rate clustered_rate(std::span<const std::vector<ClusterCount>> strata, double confidence = 0.95);
+Rate clustered_rate(std::span<const std::vector<ClusterCount>> strata, double confidence = 0.95,
+                    double further_variance = 0.0);
 
 /// The same of one stratum. The rate keeps its clusters.
-Rate clustered_rate(std::vector<ClusterCount> clusters, double confidence = 0.95);
+Rate clustered_rate(std::vector<ClusterCount> clusters, double confidence = 0.95,
+                    double further_variance = 0.0);
 
 /// The mean of values between 0 and 1 in strata of clusters, with the same interval: a value x counts as x
 /// hits in one trial. Of nothing: NaN.

@@ -43,6 +43,7 @@ struct Rate {
   /// Wilson's interval, or that of clustered_rate().
   Interval interval;
   std::vector<ClusterCount> clusters = {};  ///< of the trials; none: they are independent
+  double further_variance = 0.0;            ///< of `value`, beside that of the trials: `interval` has it
 };
 
 /// The rate of `hits` in `total` with Wilson's interval.

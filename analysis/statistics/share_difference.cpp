@@ -131,7 +131,9 @@ PairedCounts pooled_counts(std::span<const PairedCounts> clusters) {
   return sum;
 }
 
-ShareDifference clustered_difference(std::span<const PairedCounts> clusters, double confidence) {
+namespace {
+
+ShareDifference of_clusters(std::span<const PairedCounts> clusters, double confidence) {
   const std::vector<PairedCounts> kept = occupied(clusters);
   const PairedCounts sum = pooled_counts(kept);
   if (kept.size() < 2)
@@ -148,6 +150,23 @@ ShareDifference clustered_difference(std::span<const PairedCounts> clusters, dou
   const double t = two_sided_student_quantile(confidence, static_cast<std::int64_t>(kept.size()) - 1);
   const double ratio = clustered > 0.0 && independent > 0.0 ? independent / clustered : 1.0;
   return difference_of(sum, n * std::min(1.0, ratio * z * z / (t * t)), clustered_mcnemar(kept), confidence);
+}
+
+}  // namespace
+
+ShareDifference clustered_difference(std::span<const PairedCounts> clusters, double confidence,
+                                     double further_variance) {
+  ShareDifference found = of_clusters(clusters, confidence);
+  if (!(further_variance > 0.0) || std::isnan(found.value))
+    return found;
+  const double z = two_sided_normal_quantile(confidence);
+  const double variance =
+      std::pow((found.interval.upper - found.interval.lower) / (2.0 * z), 2) + further_variance;
+  const auto longer = [&](double half) { return std::sqrt(half * half + z * z * further_variance); };
+  found.interval = {std::max(-1.0, found.value - longer(found.value - found.interval.lower)),
+                    std::min(1.0, found.value + longer(found.interval.upper - found.value))};
+  found.p = std::max(found.p, std::erfc(std::abs(found.value) / std::sqrt(2.0 * variance)));
+  return found;
 }
 
 McNemarTest clustered_mcnemar(std::span<const PairedCounts> clusters) {
@@ -173,7 +192,7 @@ McNemarTest clustered_mcnemar(std::span<const PairedCounts> clusters) {
 ShareDifference independent_difference(const Rate& first, const Rate& second, double confidence) {
   const auto of = [confidence](const Rate& rate) {
     return rate.clusters.empty() ? mpm::rate(rate.hits, rate.total, confidence)
-                                 : clustered_rate(rate.clusters, confidence);
+                                 : clustered_rate(rate.clusters, confidence, rate.further_variance);
   };
   const Rate a = of(first), b = of(second);
   if (a.total == 0 || b.total == 0)

@@ -52,8 +52,13 @@ ShareDifference paired_difference(const PairedCounts& counts, double confidence 
 ///
 /// cases, as clustered_rate() has it, t with W - 1 degrees of freedom. p is that of clustered_mcnemar(). Of
 /// one cluster, it is paired_difference().
+///
+/// A `further_variance` of D, such as that of the thresholds of both, lengthens either half of the interval:
+/// the square of a half grows by z^2 times it. p is then at least that of a normal D of this variance and
+/// that of the interval.
 /// @throws InputError for a negative number, or unless 0 < confidence < 1
-ShareDifference clustered_difference(std::span<const PairedCounts> clusters, double confidence = 0.95);
+ShareDifference clustered_difference(std::span<const PairedCounts> clusters, double confidence = 0.95,
+                                     double further_variance = 0.0);
 
 /// McNemar's test of cases in clusters that are drawn at random: with lost_w and gained_w of them in cluster
 /// w,

@@ -108,19 +108,29 @@ OptionKeys calibration_keys(CalibrationOptions& options, const Study& study) {
     if (*options.seed == study.seed)
       table.refuse(key, fmt::format("{}, the seed of the study", *options.seed), "another one");
   };
-  return {key::number("false_alarms", options.false_alarms, NumberRule::inside(0, 1),
-                      "largest share of healthy loops that the threshold of the rate "
-                      "`false_alarm_calibrated` may flag; the other thresholds are at 1 % and 5 %"),
-          key::whole("healthy", options.healthy, 1, kMaxCalibrationLoops,
-                     "number of loops without a fault. A threshold at 1 % needs 99, one at 5 % needs 19; "
-                     "with 200 the rate at 5 % lies within 2.4 and 8.4 %"),
-          key::whole("ud", options.ud, 0, kMaxCalibrationLoops,
-                     "number of loops with an unmeasured disturbance alone, for the thresholds of a monitor "
-                     "of the model, which should not flag them"),
-          key::option("seed", "whole number", "seed of these loops")
-              .otherwise("that of the study with the bits of 0x63616c6962726174 (\"calibrat\") flipped")
-              .allow("not that of the study, nor of `run --seed`")
-              .read(read_seed)};
+  return {
+      key::number("false_alarms", options.false_alarms, NumberRule::inside(0, 1),
+                  "largest share of healthy loops that the threshold of the rate "
+                  "`false_alarm_calibrated` may flag; the other thresholds are at 1 % and 5 %"),
+      key::whole("healthy", options.healthy, 1, kMaxCalibrationLoops,
+                 "number of loops without a fault. A threshold at 1 % needs 99, one at 5 % needs 19; "
+                 "with 200 the rate at 5 % lies within 2.4 and 8.4 %"),
+      key::whole("ud", options.ud, 0, kMaxCalibrationLoops,
+                 "number of loops with an unmeasured disturbance alone, for the thresholds of a monitor "
+                 "of the model, which should not flag them"),
+      key::option("worlds", "whole number",
+                  "in how many worlds these loops take place, each with a benchmark of its own. Scores of "
+                  "loops of one world are alike, so that many worlds with few loops each make a better "
+                  "threshold than few worlds with many")
+          .otherwise("`world.count`")
+          .allow("1 to 1000000; in a study with `[world]`")
+          .read([&options](const TomlTable& table, const std::string& key) {
+            options.worlds = static_cast<int>(read_whole(table, key, 1, kMaxCalibrationLoops));
+          }),
+      key::option("seed", "whole number", "seed of these loops")
+          .otherwise("that of the study with the bits of 0x63616c6962726174 (\"calibrat\") flipped")
+          .allow("not that of the study, nor of `run --seed`")
+          .read(read_seed)};
 }
 
 }  // namespace

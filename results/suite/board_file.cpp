@@ -256,6 +256,7 @@ MethodScores scores_in(const JsonEntry& entry, const CellScores& cell, const Stu
   }
   entry.require_keys(keys);
   scope.in_worlds = cell.in_worlds;
+  scope.chosen_is_05 = study.calibration && study.calibration->false_alarms == 0.05;
   const LoopOutcomes outcomes = outcomes_in(entry, cell, scope);
   MethodScores scores = scores_of_outcomes(cell, outcomes, scope);
   if (entry.has("failed"))

@@ -92,6 +92,7 @@ SuiteJson standing_json(const Leaderboard& board) {
                        {"difference", duel.difference.value},
                        {"lower", duel.difference.interval.lower},
                        {"upper", duel.difference.interval.upper},
+                       {"p_holm", duel.p_holm},
                        {"loops", duel.loops}});
     of_method.update({{"rate", standing->rate},
                       {"place", standing->place},

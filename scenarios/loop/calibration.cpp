@@ -25,6 +25,8 @@ Study calibration_study(const Study& study) {
   loops.monitoring.reset();
   loops.experiments.healthy = study.calibration->healthy;
   loops.experiments.ud = study.calibration->ud;
+  if (loops.world)
+    loops.world->count = study.calibration->worlds.value_or(loops.world->count);
   if (study.simulation.excitation == SignalSequence::shared &&
       (study.simulation.random_steps || study.simulation.md_noise_standard_deviation.size() > 0)) {
     loops.simulation.steps = as_steps(measured_disturbances(study));

@@ -169,6 +169,7 @@ struct CalibrationOptions {
   int healthy = 200;                       ///< loops without a fault
   int ud = 100;                            ///< loops with an unmeasured disturbance alone
   std::optional<std::uint64_t> seed = {};  ///< none: derived from that of the study
+  std::optional<int> worlds = {};          ///< in which they take place; none: as many as those of the study
 
   bool operator==(const CalibrationOptions&) const = default;
 };

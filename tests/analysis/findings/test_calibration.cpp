@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,10 +14,14 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/experiment_record.hpp"
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/findings/rate_table.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/statistics/clustered_rate.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/calibration.hpp"
+#include "scenarios/loop/world.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "solvers/qp_solver_factory.hpp"
 #include "tests/analysis/made_up_record.hpp"
 
@@ -78,6 +85,90 @@ TEST_CASE("calibration: what is kept of a verdict, of one without a score, and o
   CHECK(calibration.loops[0].scores[0] == 2.5);
   CHECK(calibration.loops[0].scores[1] == -kInfinity);
   CHECK(std::isnan(calibration.loops[0].scores[2]));
+}
+
+TEST_CASE("calibration loops take place in as many worlds as they are asked for", "[calibration]") {
+  Study study = calibrated_study();
+  CHECK_FALSE(calibration_study(study).world);
+  study.world.emplace().count = 8;
+  CHECK(calibration_study(study).world->count == 8);
+  study.calibration->worlds = 40;
+  study.calibration->healthy = 80;
+  const Study loops = calibration_study(study);
+  std::set<int> worlds;
+  for (std::int64_t i = 0; i < 80; ++i)
+    worlds.insert(world_of(loops, i));
+  CHECK(worlds.size() == 40);
+}
+
+TEST_CASE("rates at calibrated thresholds in worlds: their intervals know of the threshold",
+          "[calibration]") {
+  Study study = calibrated_study();
+  study.world.emplace().count = 8;
+  study.calibration = CalibrationOptions{.healthy = 40, .ud = 0};
+  const OutcomeScope scope{
+      .at_05 = true, .at_chosen = true, .in_worlds = true, .chosen_is_05 = true, .is_whole = true};
+  const FaultTruth healthy{};
+  RandomStream stream(7, 0, StreamId::bootstrap);
+  int held = 0, held_without = 0;
+  constexpr int kSuites = 300;
+  for (int suite = 0; suite < kSuites; ++suite) {
+    // Scores of a world lie together, as those of loops with one benchmark do.
+    const auto drawn_worlds = [&stream] {
+      std::vector<double> worlds;
+      for (int world = 0; world < 8; ++world)
+        worlds.push_back(stream.normal());
+      return worlds;
+    };
+    const auto score = [&stream](const std::vector<double>& worlds, int loop) {
+      return worlds[static_cast<std::size_t>(loop % 8)] + stream.normal();
+    };
+    Calibration calibration;
+    const std::vector<double> theirs = drawn_worlds(), ours = drawn_worlds();
+    for (int loop = 0; loop < 40; ++loop)
+      calibration.loops.push_back({ExperimentKind::healthy, {score(theirs, loop)}});
+    const CalibratedThresholds thresholds = calibrated_thresholds(study, calibration, 0);
+    REQUIRE(thresholds.redrawn_05.size() == kRedraws);
+    CHECK(std::is_sorted(thresholds.redrawn_05.begin(), thresholds.redrawn_05.end()));
+    RateCounts counts;
+    for (int loop = 0; loop < 128; ++loop) {
+      const double found = score(ours, loop);
+      const bool above = thresholds.at_05.exceeded_by(found);
+      counts.add(
+          {scope, healthy,
+           LoopOutcome{.answered = true,
+                       .above_05 = above,
+                       .above_chosen = above,
+                       .redrawn_05 = static_cast<std::uint8_t>(thresholds.redraws_exceeded_by(found))}},
+          loop % 8);
+    }
+    const Rate rate = counts.rates(0.95)["false_alarm_calibrated"];
+    CHECK(rate.further_variance >= 0.0);
+    held += rate.interval.contains(0.05) ? 1 : 0;
+    held_without += clustered_rate(rate.clusters).interval.contains(0.05) ? 1 : 0;
+  }
+  INFO(held << " and " << held_without << " of " << kSuites);
+  CHECK(held > held_without + kSuites / 50);
+  CHECK(held > kSuites * 85 / 100);
+}
+
+TEST_CASE("the share under redrawn thresholds is that of each of them", "[calibration]") {
+  RedrawnShare share;
+  CHECK(share.variance() == 0.0);
+  share.add(false, false, 40);
+  share.add(true, true, 0);
+  CHECK(share.variance() == 0.0);  // no threshold matters
+  share.add(false, true, 21);      // above the first 21 of them
+  share.add(false, true, 63);
+  std::vector<double> shares;
+  for (int threshold = 0; threshold < kRedraws; ++threshold)
+    shares.push_back((threshold < 21 ? 3.0 : 2.0) / 4.0);
+  double mean = 0.0, squares = 0.0;
+  for (const double each : shares)
+    mean += each / kRedraws;
+  for (const double each : shares)
+    squares += (each - mean) * (each - mean) / (kRedraws - 1);
+  CHECK(share.variance() == Approx(squares));
 }
 
 TEST_CASE("rates at calibrated thresholds: above them, whatever the method itself flags", "[calibration]") {

@@ -70,6 +70,23 @@ TEST_CASE("a method is paired with the others on the same loops", "[leaderboard]
   CHECK_FALSE(standing_of(board, 3));
 }
 
+TEST_CASE("a duel is won beyond chance among all duels of a method", "[leaderboard]") {
+  // 10 of 40 loops more is p = 0.002: beyond chance of one duel or of ten, not of thirty.
+  for (const std::size_t others : {1, 10, 30}) {
+    std::vector<std::string> names{"mine"};
+    std::vector<LoopOutcomes> outcomes{above_on_first(30, 40)};
+    for (std::size_t i = 0; i < others; ++i) {
+      names.push_back("other" + std::to_string(i));
+      outcomes.push_back(above_on_first(20, 40));
+    }
+    const auto standing =
+        standing_of(board_of(names, outcomes, std::vector<OutcomeScope>(names.size(), kPower)), 0);
+    REQUIRE(standing);
+    CHECK(standing->duels.front().difference.interval.lower > 0.0);
+    CHECK(standing->won() == (others < 30 ? static_cast<int>(others) : 0));
+  }
+}
+
 TEST_CASE("loops that one of two methods has not seen do not pair them", "[leaderboard]") {
   LoopOutcomes half = above_on_first(40, 40);
   std::fill_n(half.begin(), 20, std::nullopt);

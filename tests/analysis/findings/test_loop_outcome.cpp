@@ -19,16 +19,18 @@ TEST_CASE("every fact of an outcome is put back as it was taken out, and is one 
     CHECK(fact.get(all) == 0);
     fact.set(all, 1);
     fact.set(one, 3);
-    CHECK((fact.bits == 1 ? fact.get(one) == 1 : fact.get(one) == 0));  // no verdict has this number
+    // Of yes or no; of a verdict, none of which has this number; of a count.
+    CHECK(fact.get(one) == (fact.bits == 1 ? 1U : fact.bits == 2 ? 0U : 3U));
   }
   // A member that is in no fact is missing here.
   const auto& [answered, flagged, above_05, above_chosen, right_cv, right_source, above_01, above_not_mpm,
-               names_source, channel, parameter, size, candidate, window, mismatch] = all;
+               names_source, channel, parameter, size, candidate, window, mismatch, redrawn_05] = all;
   for (const bool member : {answered, flagged, above_05, above_chosen, right_cv, right_source, above_01,
                             above_not_mpm, names_source})
     CHECK(member);
   for (const Correctness member : {channel, parameter, size, candidate, window, mismatch})
     CHECK(member == Correctness::wrong);
+  CHECK(redrawn_05 == 1);
 }
 
 TEST_CASE("a method says nothing that it cannot, and nothing right of what is not there", "[outcome]") {
@@ -55,6 +57,7 @@ TEST_CASE("a method says nothing that it cannot, and nothing right of what is no
   CHECK_FALSE(possible({.answered = true, .mismatch = Correctness::right}, healthy));
   CHECK_FALSE(
       possible({.answered = true, .mismatch = Correctness::wrong}, {ExperimentKind::other, true, false}));
+  CHECK_FALSE(possible({.answered = true, .redrawn_05 = 5}, fault));  // no worlds to draw
   CHECK_FALSE(possible({.answered = true, .window = Correctness::right}, healthy));
 }
 
