@@ -30,6 +30,9 @@ std::string program_options(const TomlTable& table) {
 }  // namespace
 
 bool is_answering_name(std::string_view name) {
+  constexpr std::size_t kLongest = 256;
+  if (name.size() > kLongest)
+    return false;
   const std::size_t end = name.find_first_of(":+");
   return is_method_name(name.substr(0, end)) &&
          (end == std::string_view::npos || is_answering_name(name.substr(end + 1)));

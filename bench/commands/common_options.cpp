@@ -105,7 +105,8 @@ void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const 
 void add_method_files(CLI::App& app, std::vector<std::string>& files) {
   app.add_option(
       "--method-file", files,
-      "File of methods that are programs, [method.NAME] command = [...]; may be given several times");
+      "File of methods: programs, [method.NAME] command = [...], or two as one, detector = ..., namer = ...; "
+      "may be given several times");
 }
 
 namespace {

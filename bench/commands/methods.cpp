@@ -50,13 +50,18 @@ ordered_json json_of(const AssessmentMethodInfo& method) {
   return json;
 }
 
-Section list_of(const std::vector<AssessmentMethodInfo>& methods) {
+Section list_of(const MethodTable& table) {
+  const std::vector<AssessmentMethodInfo>& methods = table.methods();
   Section section{"methods", "Methods of assessment"};
   Facts facts;
   for (const AssessmentMethodInfo& method : methods)
     facts.add(as_label(method.name), as_label(fmt::format("{}; needs {}; answers {}", method.title,
                                                           needs_text(method), answers_text(method))));
   section.add(std::move(facts));
+  std::vector<std::string> variants;
+  for (const AssessmentMethodInfo& variant : table.variants())
+    variants.push_back(variant.name);
+  section.say(fmt::format("By name, and not among all: {}.", listed(variants)));
   section.say("mpmbench methods NAME shows the options and numbers of one of them.");
   section.data = [&methods](ordered_json& json) {
     json["methods"] = ordered_json::array();
@@ -73,6 +78,7 @@ Section details_of(const AssessmentMethodInfo& method) {
   facts.add("flagged", as_label(method.verdict));
   facts.add("needs", as_label(needs_text(method)));
   facts.add("answers", as_label(answers_text(method)));
+  facts.add("model", std::string(to_string(method.information)));
   section.add(std::move(facts));
 
   Facts options;
@@ -100,7 +106,7 @@ ExitCode describe_methods(const MethodsArguments& arguments) {
   const auto table = take_method_files(arguments.method_files).table;
   Document document;
   if (arguments.method.empty())
-    document.sections.push_back(list_of(table->methods()));
+    document.sections.push_back(list_of(*table));
   else
     document.sections.push_back(details_of(table->method(arguments.method)));
   print_result(arguments.json ? document_json(document) : document_text(document));

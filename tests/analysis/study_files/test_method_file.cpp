@@ -23,6 +23,10 @@ TEST_CASE("method file: answers are of a method, a variant of it, or a composite
     CHECK(is_answering_name(name));
   for (const char* const name : {"", ":corrected", "sun:", "sse+", "+lasso", "a:b c", "a+all"})
     CHECK_FALSE(is_answering_name(name));
+  std::string many = "a";
+  for (int i = 0; i < 100000; ++i)
+    many += "+a";
+  CHECK_FALSE(is_answering_name(many));
 }
 
 }  // namespace
