@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -60,10 +62,43 @@ void PanelScript::plot(const std::string& item) {
   items_.push_back(item);
 }
 
+/// The places of a curve that a screen can show: all of them, and of more than kMostOnCurve, where x never
+/// falls, of each of a quarter as many stretches the first, the last, the lowest and the highest value, and
+/// one of each gap.
+std::vector<std::size_t> PanelScript::shown_places(const std::vector<double>& x,
+                                                   const std::vector<double>& y) const {
+  const std::size_t size = std::min(x.size(), y.size());
+  std::vector<std::size_t> places;
+  const std::size_t stretch =
+      size <= kMostOnCurve || !std::is_sorted(x.begin(), x.end()) ? 1 : (4 * size - 1) / kMostOnCurve + 1;
+  for (std::size_t begin = 0; begin < size; begin += stretch) {
+    const std::size_t end = std::min(begin + stretch, size);
+    std::set<std::size_t> kept;
+    std::size_t lowest = size, highest = size;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!shows(x[i], y[i])) {
+        kept.insert(i);
+        while (i + 1 < end && !shows(x[i + 1], y[i + 1]))
+          ++i;
+        continue;
+      }
+      if (lowest == size || y[i] < y[lowest])
+        lowest = i;
+      if (highest == size || y[i] > y[highest])
+        highest = i;
+    }
+    kept.insert({begin, end - 1});
+    if (lowest != size)
+      kept.insert({lowest, highest});
+    places.insert(places.end(), kept.begin(), kept.end());
+  }
+  return places;
+}
+
 void PanelScript::curve(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen,
                         const char* style) {
   std::string rows;
-  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
+  for (const std::size_t i : shown_places(x, y)) {
     if (!shows(x[i], y[i])) {
       rows += "\n";
       continue;

@@ -24,7 +24,8 @@ struct Whisker {
   std::string name;
 };
 
-inline constexpr std::size_t kMostPoints = 4000;  ///< of one series
+inline constexpr std::size_t kMostPoints = 4000;   ///< of one series
+inline constexpr std::size_t kMostOnCurve = 1600;  ///< four to a pixel of a panel, about
 
 /// Writes the script of one panel. What is drawn later lies on top. Points that an axis cannot show (not
 /// finite, or not positive on a logarithmic axis) are left out of points and interrupt lines.
@@ -33,6 +34,8 @@ class PanelScript {
   /// `name` is unique within a figure: letters, digits and underscores, a letter first.
   PanelScript(std::string name, std::string title, Axis x, Axis y);
 
+  /// Of a curve with more than kMostOnCurve points, as of three weeks of minutes, those are drawn that make
+  /// what a screen shows: the extremes of each stretch.
   void line(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
   /// A line that keeps the value y[k] from x[k] to x[k + 1].
   void steps(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
@@ -60,6 +63,7 @@ class PanelScript {
 
   void see(const Axis& axis, Extent& extent, double value) const;
   bool shows(double x, double y) const;
+  std::vector<std::size_t> shown_places(const std::vector<double>& x, const std::vector<double>& y) const;
   void draw(const std::vector<Whisker>& whiskers, const Pen& pen, bool level);
   std::string block(const std::string& rows);
   void curve(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen, const char* style);

@@ -1,13 +1,16 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "analysis/study_files/study_library.hpp"
+#include "base/non_finite.hpp"
 #include "results/plot/figure_drawing.hpp"
 #include "results/plot/gnuplot.hpp"
 #include "results/plot/panel_script.hpp"
@@ -47,6 +50,28 @@ std::vector<std::string> drawn(const std::vector<Panel>& panels) {
 
 std::string draw_panel(const Panel& panel) {
   return drawn({panel}).at(0);
+}
+
+TEST_CASE("a long curve has the points that a screen shows: ends, extremes and gaps") {
+  const auto rows_of = [](const std::vector<double>& y) {
+    std::vector<double> x(y.size());
+    std::iota(x.begin(), x.end(), 0.0);
+    PanelScript panel("long", "", {.label = "k"}, {.label = "y"});
+    panel.line(x, y, Pen{});
+    return panel.finish("a curve").data;
+  };
+  std::vector<double> y(30'000, 0.0);
+  for (std::size_t k = 0; k < y.size(); ++k)
+    y[k] = k % 2 == 0 ? 1.0 : -1.0;
+  y[12'345] = 7.0;
+  y[23'456] = -8.0;
+  std::fill_n(y.begin() + 20'000, 10, kNaN);
+  const std::string rows = rows_of(y);
+  CHECK(std::count(rows.begin(), rows.end(), '\n') < 1.1 * kMostOnCurve);
+  CHECK_THAT(rows, Contains("\n12345 7\n") && Contains("\n23456 -8\n") && Contains("\n29999 -1\n"));
+  CHECK_THAT(rows, Contains("\n\n"));  // the gap
+  const std::string all = rows_of(std::vector<double>(kMostOnCurve, 1.0));
+  CHECK(std::count(all.begin(), all.end(), '\n') == kMostOnCurve + 2);
 }
 
 TEST_CASE("figures: a loop is drawn to its own scale, with the limits that are near") {
