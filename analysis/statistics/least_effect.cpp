@@ -1,6 +1,7 @@
 #include "analysis/statistics/least_effect.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 
@@ -65,7 +66,7 @@ Estimate least_effect(std::vector<EffectTrial> trials, double power, double conf
   }
   std::sort(found.begin(), found.end());
   const auto at = [&found](double share) {  // no interpolation: some may be infinite
-    return found[static_cast<std::size_t>(share * static_cast<double>(found.size() - 1) + 0.5)];
+    return found[static_cast<std::size_t>(std::lround(share * static_cast<double>(found.size() - 1)))];
   };
   least.interval = {at(0.5 - 0.5 * confidence), at(0.5 + 0.5 * confidence)};
   return least;

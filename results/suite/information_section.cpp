@@ -82,9 +82,9 @@ Section information_section(const Leaderboard& board) {
       const BoardDuel duel = board_duel(board, row, pair.with, pair.without);
       cells.push_back(percent_cell(board.overall[pair.without], row));
       cells.push_back(percent_cell(board.overall[pair.with], row));
-      cells.push_back(duel.loops == 0 ? Number{}
-                                      : Number{duel.difference.value, NumberForm::whole_percent,
-                                               duel.difference.interval});
+      cells.emplace_back(duel.loops == 0 ? Number{}
+                                         : Number{duel.difference.value, NumberForm::whole_percent,
+                                                  duel.difference.interval});
     }
     table.row(std::move(cells));
   }
