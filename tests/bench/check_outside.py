@@ -468,7 +468,7 @@ for line in sys.stdin:
             squares = [((numpy.array(each["y"], float) - each[model]) ** 2).mean(axis=1) for each in (message["loop"], known)]
             return (squares[0] / squares[1]).max()
         answer.update(flagged=False, score=ratio("y_sim_corrected"), numbers={"plain": ratio("y_sim")})
-    print(json.dumps(answer) + "\\n", flush=True)
+    print(json.dumps(answer), flush=True)
 """
 
 
