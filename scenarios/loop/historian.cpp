@@ -74,7 +74,7 @@ void make_bad(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
 /// Each run of samples between two gaps, the longest there is, through what a historian does with `deviation`
 /// standard deviations of the noise.
 void pass_runs(const Study& study, double deviation,
-               Eigen::RowVectorXd (*kept)(const Eigen::Ref<const Eigen::RowVectorXd>&, double),
+               Eigen::RowVectorXd (*passed)(const Eigen::Ref<const Eigen::RowVectorXd>&, double),
                Eigen::MatrixXd& y) {
   for (Eigen::Index cv = 0; cv < y.rows(); ++cv)
     for (Eigen::Index from = 0; from < y.cols();) {
@@ -82,8 +82,8 @@ void pass_runs(const Study& study, double deviation,
       while (to < y.cols() && !std::isnan(y(cv, to)))
         ++to;
       if (to > from)
-        y.row(cv).segment(from, to - from) = kept(y.row(cv).segment(from, to - from),
-                                                  deviation * study.simulation.noise_standard_deviation(cv));
+        y.row(cv).segment(from, to - from) = passed(
+            y.row(cv).segment(from, to - from), deviation * study.simulation.noise_standard_deviation(cv));
       from = to + 1;
     }
 }

@@ -124,6 +124,14 @@ def main(program):
         text = STUDY.replace("COMMAND", f'"{sys.executable}", "-B", "lags.py"')
         (folder / "study.toml").write_text(text + RANDOM)
 
+        # No linear model is the program exactly, and methods know it; nobody has its values between its samples.
+        said = run("validate", "study.toml", "--experiments", 2, "--quiet")
+        assert "assessment.model: benchmark, because the plant is a program" in said, said
+        for keys, allowed in ('sampling = "average"', False), ("shift = -0.5", False), ("shift = -2", True):
+            (folder / "record.toml").write_text(text + RANDOM + "[record]\n" + keys)
+            said = run("validate", "record.toml", "--experiments", 2, "--quiet", code=0 if allowed else 2)
+            assert allowed or "between the samples of a plant that is a program" in said, said
+
         # Processes, threads, one after the other, killed and resumed: the same bits.
         reference = folder / "reference.h5"
         run("run", "study.toml", "-o", reference, "--jobs", 1, "--store", "all", "--quiet")

@@ -223,9 +223,27 @@ TEST_CASE("rows of lines and of held signals, by hand", "[record]") {
   CHECK(rows_of_held(mean(0.0), signal) == Eigen::RowVector4d(0.0, 0.0, 2.0, 6.0));
   CHECK(rows_of_held(mean(0.5), signal) == Eigen::RowVector4d(0.0, 1.0, 4.0, 6.0));
   CHECK(rows_of_line(mean(0.0), signal) == Eigen::RowVector4d(0.0, 1.0, 4.0, 6.0));
-  CHECK(rows_of_line(mean(-0.5), signal) == Eigen::RowVector4d(0.0, 0.25, 2.25, 5.25));
+  CHECK(rows_of_line(mean(-0.5), signal) == Eigen::RowVector4d(0.0, 0.25, 2.25, 5.5));
   CHECK(rows_of_line({OutputSampling::snapshot, 0.25}, signal) == Eigen::RowVector4d(0.5, 3.0, 6.0, 6.0));
   CHECK(rows_of_held({OutputSampling::snapshot, -0.25}, signal) == Eigen::RowVector4d(0.0, 0.0, 2.0, 6.0));
+}
+
+TEST_CASE("the keys of rows land in their place, and what is none is refused", "[record]") {
+  const auto with = [](const std::string& keys) { return small_study() + "\n[record]\n" + keys; };
+  const Study named =
+      parse_study(with("sampling = 'average'\nshift = {level = -0.5, hot = 1, drain = -2}\n"), "s.toml");
+  CHECK(named.record.sampling == OutputSampling::average);
+  CHECK(named.record.cv_shift == std::vector{-0.5, 0.0});
+  CHECK(named.record.mv_shift == std::vector{1.0, 0.0});
+  CHECK(named.record.md_shift == std::vector{-2.0});
+  const Study all = parse_study(with("shift = 1\n"), "s.toml");
+  CHECK(all.record.cv_shift == std::vector{1.0, 1.0});
+  CHECK(all.record.mv_shift.empty());
+  CHECK(all.record.resamples());
+  CHECK_FALSE(all.record.looks_between_samples());
+  CHECK_THAT(refusal(with("shift = 2\n")), Catch::Contains("shift"));
+  CHECK_THAT(refusal(with("shift = {nobody = 1}\n")), Catch::Contains("nobody"));
+  CHECK_THAT(refusal(with("sampling = 'mean'\n")), Catch::Contains("average"));
 }
 
 }  // namespace mpm
