@@ -1,4 +1,4 @@
-"""The finished boards that ship with the program are of this program: every suite has one, every cell has the study
+"""The finished boards that ship with the program are of this program: every suite but a draft has one, every cell has the study
 that the program has for it, no cell is missing, and a cell that is run again comes out as it stands there.
 
 usage: check_shipped_boards.py MPMBENCH SOURCES
@@ -52,7 +52,8 @@ def check_again(program, boards):
 def main(program, sources):
     boards = pathlib.Path(sources) / "scenarios" / "suites"
     found = sorted(boards.glob("*.board.json"))
-    assert found and found == sorted(path.with_suffix(".board.json") for path in boards.glob("*.toml")), found
+    finished = [path for path in boards.glob("*.toml") if '-draft"' not in path.read_text()]
+    assert found and found == sorted(path.with_suffix(".board.json") for path in finished), found
     for path in found:
         check_board(program, path)
     check_again(program, boards)
