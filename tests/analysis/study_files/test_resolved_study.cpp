@@ -92,6 +92,7 @@ std::string random_study_text() {
       "[record]\nquantisation = 0.5\ncompression = 2\noutliers = {share = 0.01, size = {constant = 7}}\n"
       "candidates = {count = 3, share = 0.4}\n"
       "missing = {share = 0.1, length = 4, fill = 'hold'}\n"
+      "shift = {level = -0.5, drain = 1}\nbad = {share = 0.1, value = 'off_scale', quality = true}\n"
       "[disturbance]\ncvs = ['heat', 'level']\nimpact = {uniform = [0.5, 2]}\nsignal_weights = {sine = 1}\n"
       "[mismatch]\nchannels = ['heat/cold']\nimpact = {log_uniform = [0.5, 2]}\nparameter_weights = {gain = "
       "1, time_constant = 0, "
@@ -319,7 +320,8 @@ void collect(const toml::table& table, const std::string& name, Keys& keys) {
       for (const toml::node& entry : *list)
         collect(*entry.as_table(), below + "[]", keys);
     const toml::table* const inner = node.as_table();
-    if (inner == nullptr || below == "simulation.noise_standard_deviation" || name == "data")
+    if (inner == nullptr || below == "simulation.noise_standard_deviation" || below == "record.shift" ||
+        name == "data")
       continue;
     const std::string each = below + (below == "reference" ? ".FINDING" : ".NAME");
     if (is_known(each))
