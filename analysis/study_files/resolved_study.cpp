@@ -1,7 +1,11 @@
 #include "analysis/study_files/resolved_study.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -13,6 +17,12 @@
 namespace mpm {
 
 namespace {
+
+/// A key whose default is what studies without it do. Later ones go to the end.
+constexpr std::array kLaterKeys{
+    "diagnosis.impact",         "other.valve_start",      "other.weights.sensor_stuck",
+    "other.weights.stick_slip", "other.weights.friction", "record.sampling",
+    "record.exception",         "world.valve_curvature",  "world.background.swell"};
 
 TomlDraft resolved_draft(const Study& study) {
   TomlDraft draft(key_names(study_file_keys("")));
@@ -37,6 +47,23 @@ TomlDraft resolved_draft(const Study& study) {
 
 std::string resolved_study(const Study& study) {
   return resolved_draft(study).text();
+}
+
+std::string lasting_text(const Study& study) {
+  const TomlDraft draft = resolved_draft(study);
+  std::set<std::string> left_out;
+  for (const TomlDraft::Line& line : draft.lines())
+    if (line.value == line.fallback && std::count(kLaterKeys.begin(), kLaterKeys.end(), line.path) > 0)
+      left_out.insert(line.path);
+  std::string text, table;
+  std::istringstream lines(draft.text());
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('['))
+      table = line.substr(1, line.find(']') - 1) + '.';
+    if (left_out.count(table + line.substr(0, line.find(" = "))) == 0)
+      text += line + '\n';
+  }
+  return text;
 }
 
 std::vector<TomlDraft::Line> resolved_lines(const Study& study) {

@@ -21,6 +21,10 @@ namespace mpm {
 /// Errors: InputError when `study` differs in anything else from what its source says.
 std::string resolved_study(const Study& study);
 
+/// The same without keys that came after the boards that ship, where they have their defaults: the text of a
+/// study that means what it meant stays as it was, so that its digest does. Errors: as resolved_study().
+std::string lasting_text(const Study& study);
+
 /// What of this study is not as its defaults would have it, for people: "diagnosis.mpm_threshold = 0.2
 /// (default: 0.1)". Keys without a default are not among them. Errors: as resolved_study().
 std::vector<std::string> changed_defaults(const Study& study);

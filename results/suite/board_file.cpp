@@ -39,9 +39,9 @@ constexpr const char* kRepairGains[] = {kRankingRepair.data(), "repair_gain_shar
 constexpr const char* kDelays[] = {"detection_delay", "false_alarms_a_day"};
 
 /// The study of a cell with every default, so that it is the same in another version of the program only if
-/// it means the same.
+/// it means the same, and whenever it does: keys that came later count where they are used.
 std::string study_digest(const SuiteCell& cell) {
-  const std::string text = resolved_study(cell.study);
+  const std::string text = lasting_text(cell.study);
   return sha256(std::as_bytes(std::span(text)));
 }
 

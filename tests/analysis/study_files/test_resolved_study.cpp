@@ -371,6 +371,28 @@ TEST_CASE("every key of a study file comes out in a resolved study", "[resolved_
     }
 }
 
+TEST_CASE("the lasting text has a later key where it is used, and is a study otherwise the same",
+          "[resolved_study]") {
+  const Study plain = find_study("wood-berry");
+  const std::string text = lasting_text(plain), resolved = resolved_study(plain);
+  const auto names = [](const std::string& in, const std::string& key) {
+    return in.find("\n" + key + " = ") != std::string::npos;
+  };
+  for (const char* const key : {"impact", "valve_start", "sensor_stuck", "friction"}) {
+    INFO(key);
+    CHECK(names(resolved, key));
+  }
+  CHECK_FALSE(names(text, "valve_start"));
+  CHECK_FALSE(names(text, "stick_slip"));
+  CHECK(text.find("[diagnosis]\nimpact_band") != std::string::npos);
+  CHECK(text.find("impact = \"variance\"") == std::string::npos);
+  Study read = parse_study(text, "lasting");
+  read.source = plain.source;
+  CHECK(read == plain);
+  const std::string used = plain.source + "\n[diagnosis]\nimpact = \"cost\"\n";
+  CHECK(lasting_text(parse_study(used, "used")).find("impact = \"cost\"") != std::string::npos);
+}
+
 TEST_CASE("a resolved study has the defaults that its file leaves out", "[resolved_study]") {
   const Keys written = keys_of(parse_study(small_study(), "small.toml"));
   const Keys without_value{{"sensitivity", "active_cvs"}, {"sensitivity", "fixed_mvs"},
