@@ -15,6 +15,7 @@
 #include "analysis/findings/monitored_loop.hpp"
 #include "analysis/findings/world_counts.hpp"
 #include "analysis/statistics/least_effect.hpp"
+#include "analysis/methods/source_probabilities.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -28,6 +29,8 @@ struct LoopMeasures {
   std::vector<double> impact_scores, no_impact_scores, healthy_scores;
   std::vector<double> milliseconds, channels_named, size_errors;
   std::vector<EffectTrial> effects;  ///< of the faults, and whether they are above the threshold for 5 %
+  WorldMean log_score, brier_score;
+  Reliability reliability;
 };
 
 namespace {
@@ -105,6 +108,12 @@ void SeenLoop::measure(LoopMeasures& all) const {
   }
   if (!std::isnan(delay()))
     all.delays.push_back(delay());
+  if (const std::optional<SourceProbabilities> stated = stated_probabilities(said)) {
+    const FaultSource source = source_of(truth.kind);
+    all.log_score.add(record.draw.world, log_score(*stated, source));
+    all.brier_score.add(record.draw.world, brier_score(*stated, source));
+    all.reliability.add(*stated, source);
+  }
   if (truth.faulty())
     measure_fault(all);
   else if (truth.kind == ExperimentKind::healthy)
@@ -147,7 +156,32 @@ Estimate alarms_a_day(const Study& study, const LoopMeasures& counts) {
   return alarms;
 }
 
-constexpr std::array<EstimateRow, 7> kEstimates{{
+constexpr std::array<EstimateRow, 10> kEstimates{{
+    {{"log_score", "Logarithmic score",
+      "mean of -ln p / ln 1000, p the stated probability of what is true (no fault, a mismatch, a "
+      "disturbance, "
+      "both, another fault) and at least 0.001: 0 for a certain and right statement, 1 for a certain and "
+      "wrong "
+      "one",
+      true},
+     [](const LoopMeasures& of, const Study& study) {
+       return of.log_score.mean(study.aggregate.confidence);
+     }},
+    {{"brier_score", "Brier score",
+      "mean of half the squared distance of the stated probabilities from what is true: 0 to 1", true},
+     [](const LoopMeasures& of, const Study& study) {
+       return of.brier_score.mean(study.aggregate.confidence);
+     }},
+    {{"calibration_error", "Calibration error",
+      "mean difference of the stated probability of the likeliest source and the share of loops in which it "
+      "is "
+      "the truth, in bins of a tenth",
+      true},
+     [](const LoopMeasures& of, const Study&) {
+       return Estimate{.value = of.reliability.error(),
+                       .count = static_cast<std::int64_t>(of.reliability.count())};
+     },
+     false},
     {{"channels_named", "Channels named, mean",
       "mean number of channels named, over the flagged loops with one mismatch of an MV", true},
      [](const LoopMeasures& of, const Study&) { return mean_estimate(of.channels_named); },

@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/methods/source_probabilities.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "base/system/foreign_text.hpp"
@@ -24,6 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShownOfKey = 100;  // bytes, in a message
+constexpr double kRoundingOfSum = 1e-3;   // of probabilities that a program has rounded
 
 std::string found_text(const Json& value) {
   constexpr std::size_t kLongest = 60;
@@ -40,8 +42,9 @@ class AnswerReader {
   Assessment read(const Json& answer) const {
     if (!answer.is_object())
       refuse("answer", answer, "a JSON object");
-    refuse_unknown(answer, {"flagged", "score", "cv", "source", "cv_flagged", "cv_score", "cv_source",
-                            "channels", "mismatch", "candidate", "numbers", "error", "not_applicable"});
+    refuse_unknown(answer,
+                   {"flagged", "score", "cv", "source", "cv_flagged", "cv_score", "cv_source", "channels",
+                    "mismatch", "candidate", "probabilities", "numbers", "error", "not_applicable"});
     if (const Json* const error = given(answer, "error"))
       return Assessment::failed(text("error", *error));
     if (const Json* const reason = given(answer, "not_applicable"))
@@ -57,6 +60,7 @@ class AnswerReader {
     read_channels(answer, assessment);
     read_mismatch(answer, assessment);
     read_candidate(answer, assessment);
+    read_probabilities(answer, assessment);
     read_numbers(answer, assessment);
     return assessment;
   }
@@ -212,6 +216,28 @@ class AnswerReader {
     if (!candidate->is_number_integer() || candidate->get<std::int64_t>() < 1)
       refuse("candidate", *candidate, "the number of a logged signal, from 1");
     assessment.named_candidate = candidate->get<std::int64_t>() - 1;
+  }
+
+  void read_probabilities(const Json& answer, Assessment& assessment) const {
+    const Json* const stated =
+        given_if(states_probabilities(method_), answer, "probabilities", "probabilities");
+    if (stated == nullptr)
+      return;
+    if (!stated->is_object())
+      refuse("probabilities", *stated,
+             fmt::format("an object with {}", fmt::join(kWords<FaultSource>, ", ")));
+    refuse_unknown(*stated, {kWords<FaultSource>.begin(), kWords<FaultSource>.end()});
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kWords<FaultSource>.size(); ++i) {
+      const std::string key(kWords<FaultSource>[i]);
+      const double p = stated->contains(key) ? number("probabilities", stated->at(key)) : 0.0;
+      if (!(p >= 0.0 && p <= 1.0))
+        refuse("probabilities", *stated, "numbers from 0 to 1");
+      sum += p;
+      assessment.numbers.push_back({source_probability_numbers()[i].name, p});
+    }
+    if (std::abs(sum - 1.0) > kRoundingOfSum)
+      refuse("probabilities", *stated, "numbers that add up to 1");
   }
 
   void read_numbers(const Json& answer, Assessment& assessment) const {

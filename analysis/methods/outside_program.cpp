@@ -16,6 +16,7 @@
 
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/source_probabilities.hpp"
 #include "base/error.hpp"
 #include "base/system/foreign_text.hpp"
 #include "base/system/json_entry.hpp"
@@ -97,6 +98,18 @@ void read_numbers(const JsonEntry& entry, MethodDescription& method) {
   }
 }
 
+/// The numbers by which probabilities are kept, which the program has not as numbers of its own.
+void take_probabilities(const JsonEntry& entry, MethodDescription& method) {
+  for (const AssessmentNumberInfo& number : source_probability_numbers()) {
+    if (std::any_of(method.numbers.begin(), method.numbers.end(),
+                    [&](const AssessmentNumberInfo& own) { return own.name == number.name; }))
+      throw InputError(entry.place(),
+                       fmt::format("the number '{}' beside the answer 'probabilities'", number.name),
+                       "one of the two");
+    method.numbers.push_back(number);
+  }
+}
+
 /// Reads what a program says of itself.
 void read_description(const JsonEntry& entry, ProgramDescription& description) {
   MethodDescription& method = description.method;
@@ -114,12 +127,14 @@ void read_description(const JsonEntry& entry, ProgramDescription& description) {
               {"complete_record", &needs.complete_record},
               {"corrected", &corrected}});
   method.information = corrected ? ModelInformation::learnt : ModelInformation::nominal;
+  bool states_them = false;
   read_flags(entry, "answers",
              {{"cv", &method.locates_cvs},
               {"channel", &method.names_channels},
               {"source", &method.tells_sources},
               {"mismatch", &method.names_mismatches},
-              {"candidate", &method.names_candidates}});
+              {"candidate", &method.names_candidates},
+              {"probabilities", &states_them}});
   const std::vector<std::string> own =
       shipped_methods().every_name();  // a method from outside could ask for itself
   for (const std::size_t place : words_in(entry, "methods", own))
@@ -128,6 +143,8 @@ void read_description(const JsonEntry& entry, ProgramDescription& description) {
     method.stated_false_alarms = stated->number(0.0, 1.0);
   if (const std::optional<JsonEntry> numbers = entry.find("numbers"))
     read_numbers(*numbers, method);
+  if (states_them)
+    take_probabilities(entry, method);
 }
 
 ProgramDescription description_of(const MethodProgram& program, WaitingPrograms& programs) {

@@ -63,11 +63,11 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
     return ExitCode::done;
   }
   require_archives(studies, folder, options.run, options.overwrite);
-  RunOptions run = options.run;
-  run.cache = user_cache();
+  RunOptions cached = options.run;
+  cached.cache = user_cache();
   std::vector<SweepRow> rows;
   FailureTally failures;
-  run_series(studies, run, progress, options.output, command_line, [&](std::size_t place, KeptRun run) {
+  run_series(studies, cached, progress, options.output, command_line, [&](std::size_t place, KeptRun run) {
     SweepRow& row = rows.emplace_back(SweepRow{.choice = variants[place]->choice,
                                                .value = variants[place]->value,
                                                .healthy = true,

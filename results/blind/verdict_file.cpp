@@ -19,6 +19,7 @@
 #include "analysis/methods/method_file.hpp"
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/source_probabilities.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "results/blind/blind_loops.hpp"
@@ -37,6 +38,11 @@ constexpr std::size_t kLongestReason = 2000;  // bytes of an `error`
 constexpr std::array kYes{"1", "true", "yes", "wahr", "vrai", "verdadero", "vero", "waar"};
 constexpr std::array kNo{"0", "false", "no", "falsch", "faux", "falso", "onwaar"};
 
+/// "p.mpm_ud"
+std::string probability_column(std::string_view source) {
+  return fmt::format("p.{}", source);
+}
+
 std::vector<std::string> known_columns(const PlantModel& plant) {
   std::vector<std::string> columns{"loop",   "window",    "flagged",   "score", "cv",
                                    "source", "channels",  "parameter", "size",  "lower",
@@ -44,6 +50,8 @@ std::vector<std::string> known_columns(const PlantModel& plant) {
   for (const char* of_cv : {"cv_flagged", "cv_score", "cv_source"})
     for (const PlantModel::Variable& cv : plant.cvs)
       columns.push_back(fmt::format("{}.{}", of_cv, cv.name));
+  for (const std::string_view source : kWords<FaultSource>)
+    columns.push_back(probability_column(source));
   return columns;
 }
 
@@ -241,6 +249,9 @@ Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodD
   }
   if (method.names_candidates)
     answer["candidate"] = candidate_json(line);
+  for (const std::string_view source : kWords<FaultSource>)
+    if (const Json p = number_json(line, probability_column(source)); !p.is_null())
+      answer["probabilities"][std::string(source)] = p;
   return answer;
 }
 
@@ -262,6 +273,8 @@ MethodDescription description_of(const VerdictText& text, const std::string& nam
   method.names_channels = text.uses("channels");
   method.names_mismatches = text.uses("parameter");
   method.names_candidates = text.uses("candidate");
+  if (text.uses("p."))
+    method.numbers = source_probability_numbers();
   method.origin = fmt::format("file of verdicts {}", file);
   return method;
 }
