@@ -59,7 +59,7 @@ std::int64_t key_of(const ThesisTable& table) {
   return std::stoll(digest_of(text).substr(0, 12), nullptr, kHexadecimal);
 }
 
-std::vector<TableRun> listed(const TableRuns& runs) {
+std::vector<TableRun> runs_of(const TableRuns& runs) {
   std::vector<TableRun> list;
   for (int seed = 0; seed < runs.seeds; ++seed)
     for (const ThesisTable& table : runs.tables) {
@@ -137,7 +137,7 @@ std::map<std::int64_t, TableNumbers> numbers_in(const ShardStore& store) {
 }  // namespace
 
 std::vector<std::vector<ReproducedTable>> run_tables(const TableRuns& runs) {
-  std::vector<TableRun> list = listed(runs);
+  std::vector<TableRun> list = runs_of(runs);
   std::vector<std::int64_t> wanted;
   std::map<std::int64_t, const TableRun*> by_key;
   for (std::size_t place = 0; place < list.size(); ++place) {
@@ -177,7 +177,7 @@ void remove_kept(const TableRuns& runs) {
   if (!runs.folder)
     return;
   std::vector<std::int64_t> keys;
-  for (const TableRun& run : listed(runs))
+  for (const TableRun& run : runs_of(runs))
     keys.push_back(run.key);
   for (const fs::path& folder : folders_of(runs))
     try {
