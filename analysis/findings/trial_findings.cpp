@@ -1,6 +1,7 @@
 #include "analysis/findings/trial_findings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
@@ -14,30 +15,30 @@ bool has_answer(const ExperimentRecord& record, std::size_t method) {
   return record.status == ExperimentStatus::ok && record.assessments[method].answered();
 }
 
-double threshold_of(const std::vector<double>& healthy) {
+}  // namespace
+
+double trial_threshold(const std::vector<double>& healthy, double false_alarms) {
   if (healthy.empty())
     return kNaN;
-  return conformal_threshold(healthy, kTrialFalseAlarms)
+  return conformal_threshold(healthy, false_alarms)
       .value_or(*std::max_element(healthy.begin(), healthy.end()));
 }
 
-}  // namespace
-
 TrialFindings trial_findings(const Study& trial, std::size_t method, const RecordRange& records,
-                             const AssessmentRecord& said, const std::optional<TrialGuard>& guard) {
+                             const AssessmentRecord& said) {
   std::vector<double> scores;  // of healthy loops
   records.each([&](const ExperimentRecord& record) {
     if (has_answer(record, method) && record.draw.kind == ExperimentKind::healthy)
       scores.push_back(record.assessments[method].score);
   });
-  const double threshold = threshold_of(scores);
+  const double threshold = trial_threshold(scores);
   const FaultSource named = named_source(said);
   std::int64_t same = 0, right = 0;
   const Collector<MethodRates> rates = rate_collector(trial, method);
   records.each([&](ExperimentRecord record) {
     AssessmentRecord& of_loop = record.assessments[method];
-    const double decisive = guard ? record.assessments[guard->method].score : of_loop.score;
-    of_loop.flagged = of_loop.flagged && !(decisive <= (guard ? guard->threshold : threshold));
+    if (of_loop.answered() && !std::isnan(threshold))
+      of_loop.flagged = of_loop.score > threshold;
     rates.add(record);
     if (!has_answer(record, method) || !of_loop.flagged)
       return;

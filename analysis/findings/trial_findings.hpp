@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <vector>
 
 #include "analysis/experiment/record_range.hpp"
 #include "analysis/findings/method_rates.hpp"
@@ -11,21 +11,14 @@ namespace mpm {
 /// The share of simulated records without a fault that the threshold of a verdict leaves above it.
 inline constexpr double kTrialFalseAlarms = 0.02;
 
-/// What must hold beside the answer of a method before a loop counts as flagged: the score of the method in
-/// another place is above a threshold.
-struct TrialGuard {
-  std::size_t method;
-  double threshold;
-};
-
 /// How far an answer on a record is to be trusted: what the same method made of simulated loops like it
 /// (analysis/study_files/recorded_study.hpp), of which the truth is known.
 struct TrialFindings {
   /// The conformal threshold of the scores of the loops without a fault at kTrialFalseAlarms; with too few of
   /// them the largest score. NaN without such loops.
   double threshold;
-  /// Over all of these loops. One counts as flagged if the method flags it and the guard holds; without a
-  /// guard if the score is above the threshold.
+  /// Over all of these loops. One counts as flagged if its score is above the threshold; without one if the
+  /// method flags it.
   MethodRates rates;
   Rate as_high;      ///< loops without a fault whose score is as high as that of the record
   Rate same_source;  ///< of the flagged loops with the source that the answer names, those that have it
@@ -34,6 +27,10 @@ struct TrialFindings {
 /// `said` is the answer on the record by the method in place `method` of the assessments of each of
 /// `records`. Nothing is counted in `same_source` when the answer names no source.
 TrialFindings trial_findings(const Study& trial, std::size_t method, const RecordRange& records,
-                             const AssessmentRecord& said, const std::optional<TrialGuard>& guard = {});
+                             const AssessmentRecord& said);
+
+/// The conformal threshold of scores of loops without a fault at `false_alarms`; with too few of them the
+/// largest score. NaN without scores.
+double trial_threshold(const std::vector<double>& healthy, double false_alarms = kTrialFalseAlarms);
 
 }  // namespace mpm

@@ -39,6 +39,50 @@ std::vector<Eigen::Index> samples_of(const Eigen::RowVectorXd& e, double& noise)
 
 }  // namespace
 
+ChannelErrorSums& ChannelErrorSums::operator+=(const ChannelErrorSums& more) {
+  XX += more.XX;
+  Xe += more.Xe;
+  ee += more.ee;
+  n += more.n;
+  return *this;
+}
+
+ChannelErrorSums& ChannelErrorSums::operator-=(const ChannelErrorSums& less) {
+  XX -= less.XX;
+  Xe -= less.Xe;
+  ee -= less.ee;
+  n -= less.n;
+  return *this;
+}
+
+ChannelErrorSums sums_between(const ChannelErrorFit& fit, Eigen::Index first, Eigen::Index end) {
+  const auto place = [&fit](Eigen::Index sample) {
+    return std::lower_bound(fit.samples.begin(), fit.samples.end(), sample) - fit.samples.begin();
+  };
+  const Eigen::Index from = place(first), count = place(end) - from;
+  constexpr double kConstant = 10.0;  // standard deviations of the noise
+  Eigen::MatrixXd X(count, fit.X.cols() + 1);
+  X << fit.X.middleRows(from, count), Eigen::VectorXd::Constant(count, kConstant * std::sqrt(fit.noise));
+  const Eigen::VectorXd e = fit.e.segment(from, count);
+  return {X.transpose() * X, X.transpose() * e, e.squaredNorm(), static_cast<double>(count)};
+}
+
+PartialErrorFit fit_of(const ChannelErrorSums& sums, double noise) {
+  const Eigen::Index p = sums.Xe.size();
+  PartialErrorFit fit;
+  double variance = noise;
+  for (int pass = 0; pass < 2; ++pass) {
+    const Eigen::LDLT<Eigen::MatrixXd> A(sums.XX / variance + Eigen::MatrixXd::Identity(p, p));
+    fit.a = A.solve(sums.Xe / variance);
+    fit.covariance = A.solve(Eigen::MatrixXd::Identity(p, p));
+    fit.left = std::max(0.0, sums.ee - 2.0 * fit.a.dot(sums.Xe) + fit.a.dot(sums.XX * fit.a)) /
+               std::max(1.0, sums.n);
+    variance = std::max(noise, fit.left);
+  }
+  fit.a.conservativeResize(p - 1);
+  return fit;
+}
+
 ChannelErrorFits::ChannelErrorFits(const Study& study, double delta)
     : study_(study), settling_(slowest_settling(study)) {
   const Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(study.plant.G.cols(), 1);
@@ -52,9 +96,11 @@ ChannelErrorFits::ChannelErrorFits(const Study& study, double delta)
 ChannelErrorFit ChannelErrorFits::of(const AssessedLoop& loop, Eigen::Index cv) const {
   ChannelErrorFit fit;
   const Eigen::RowVectorXd all = loop.y.row(cv) - loop.y_sim.row(cv);
-  const std::vector<Eigen::Index> samples = samples_of(all, fit.noise);
+  fit.samples = samples_of(all, fit.noise);
+  const std::vector<Eigen::Index>& samples = fit.samples;
   fit.noise += variance_floor(loop.y_sim.row(cv).transpose());
-  const Eigen::VectorXd e = all(samples).transpose();
+  fit.e = all(samples).transpose();
+  const Eigen::VectorXd& e = fit.e;
   const auto n = static_cast<double>(e.size());
   fit.left = e.squaredNorm() / n;
   if (errors_.empty())

@@ -18,13 +18,38 @@ namespace mpm {
 /// standard deviation each (relative_errors()) under the recorded inputs, less what no record can tell
 /// (untold_columns()), which y_sim has.
 struct ChannelErrorFit {
-  std::vector<ChannelError> errors;  ///< p, of each column
+  std::vector<ChannelError> errors;   ///< p, of each column
+  std::vector<Eigen::Index> samples;  ///< n, of the loop
+  Eigen::VectorXd e;                  ///< n
   Eigen::MatrixXd X;
   double noise =
       0.0;  ///< half of the mean squared difference of successive errors, those of a CV of an analyser too
   Eigen::VectorXd a;  ///< the most likely errors, p
   double left = 0.0;  ///< mean (e - X a)^2
 };
+
+/// Sums over a part of the record, from which its own errors follow: X' X, X' e, e' e, n. X has a further
+/// column, a constant of the part: that of the whole record has a share of what is wrong in the rest of it.
+struct ChannelErrorSums {
+  Eigen::MatrixXd XX;
+  Eigen::VectorXd Xe;
+  double ee = 0.0, n = 0.0;
+
+  ChannelErrorSums& operator+=(const ChannelErrorSums& more);
+  ChannelErrorSums& operator-=(const ChannelErrorSums& less);
+};
+
+/// Of the samples of the loop from `first` to before `end`.
+ChannelErrorSums sums_between(const ChannelErrorFit& fit, Eigen::Index first, Eigen::Index end);
+
+/// What the errors are and leave in such a part, as ChannelErrorFit has it for all of it.
+struct PartialErrorFit {
+  Eigen::VectorXd a;           ///< p
+  Eigen::MatrixXd covariance;  ///< of a and the constant, p + 1 x p + 1, and I where nothing is told
+  double left = 0.0;
+};
+
+PartialErrorFit fit_of(const ChannelErrorSums& sums, double noise);
 
 /// Fits of the CVs of a study whose channels may be off by the relative size `delta`; 0: p = 0.
 class ChannelErrorFits {

@@ -7,36 +7,40 @@
 #include <fmt/format.h>
 
 #include "analysis/records/channel_error_fit.hpp"
-#include "analysis/statistics/best_candidate.hpp"
+#include "analysis/records/channel_health.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 namespace {
 
-/// A score that is flagged without simulated records. Of 26 healthy records (tests/reliability/records.py,
-/// seeds 2 and 3) the largest was 1.16.
-constexpr double kFarTooLarge = 1.5;
-constexpr double kUsual = 2.0;  ///< the largest of some errors of the model, standard deviations
-
 class ModelCheck final : public AssessmentMethod {
  public:
-  ModelCheck(const AssessmentContext& context, double delta) : fits_(context.study, delta) {}
+  ModelCheck(const AssessmentContext& context, double delta)
+      : fits_(context.study, delta), settling_(slowest_settling(context.study)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     Assessment assessment;
     assessment.score = 0.0;
+    double health = 0.0;
+    const std::vector<Eigen::Index> begins = health_periods(loop.samples(), settling_);
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const ChannelErrorFit fit = fits_.of(loop, cv);
-      const double off = fit.a.size() > 0 ? fit.a.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / kUsual : 0.0;
-      const double score = larger_or_nan(off, std::sqrt(fit.left / fit.noise));
+      const double score = error_score(fit.a, fit.left, fit.noise);
       assessment.cvs.push_back({score > kFarTooLarge, score});
       assessment.score = std::max(assessment.score, score);
+      assessment.numbers.push_back({"noise", fit.noise, cv});
+      for (const ChannelHistory& history : channel_histories(fit, cv, begins, loop.samples(), kInfinity))
+        for (const ChannelPeriod& period : history.periods)
+          health = std::max(health, period.score);
     }
+    assessment.numbers.push_back({"health", health});
     assessment.flagged = assessment.score > kFarTooLarge;
     return assessment;
   }
 
  private:
   ChannelErrorFits fits_;
+  Eigen::Index settling_;
 };
 
 /// Over the samples that are there, about their mean.
@@ -50,7 +54,7 @@ double variance_of_known(const Eigen::RowVectorXd& y) {
 }  // namespace
 
 std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoop& loop, double delta) {
-  constexpr double kMostLeft = 0.5, kMostNoise = 10.0;
+  constexpr double kMostLeft = 0.5;
   const ChannelErrorFits fits(study, delta);
   std::vector<UnexplainedCv> found;
   for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
@@ -73,7 +77,11 @@ AssessmentMethodInfo model_check_method(double delta) {
                   "percent make them",
        .requirements = {.complete_record = false},
        .locates_cvs = true,
-       .numbers = {},
+       .numbers = {{"noise", NumberScope::cv, "half of the mean squared difference of successive errors",
+                    "CV unit^2"},
+                   {"health", NumberScope::loop, "largest score of a channel in a period of its own"},
+                   {kCostNumber, NumberScope::cv, "cost over that of the loop as designed"},
+                   {kCostSinceNumber, NumberScope::cv, "the same since the onset of the record"}},
        .origin = "mpmbench assess",
        .fingerprint = fmt::format("{:g}", delta)},
       {},

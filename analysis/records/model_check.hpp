@@ -7,6 +7,13 @@
 namespace mpm {
 
 inline constexpr const char* kModelCheck = "model-error";
+/// Numbers that a RecordPanel adds to its answers, CvCost::ratio of each CV.
+inline constexpr const char* kCostNumber = "cost";
+inline constexpr const char* kCostSinceNumber = "cost_since";
+
+/// A score that is flagged without simulated records. Of 26 healthy records (tests/reliability/records.py,
+/// seeds 2 and 3) the largest was 1.16.
+inline constexpr double kFarTooLarge = 1.5;
 
 /// Does the model explain the record, as well as a model does that is some percent off? With the errors a of
 /// the channels of CV i that ChannelErrorFit has, what they leave of the simulation errors and their noise
@@ -24,6 +31,8 @@ struct UnexplainedCv {
   Eigen::Index cv;
   double noise;  ///< its standard deviation, in those that the study states
 };
+
+inline constexpr double kMostNoise = 10.0;  ///< of a CV, in standard deviations that the study states
 
 /// The CVs that the model does not explain, whatever its errors: it leaves more than half of what they do,
 /// and their noise has more than ten times the standard deviation that the study states. `score` above cannot

@@ -11,13 +11,18 @@
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/column_lags.hpp"
+#include "analysis/records/cv_costs.hpp"
 #include "analysis/records/model_check.hpp"
+#include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
 #include "analysis/records/untold_part.hpp"
+#include "analysis/records/verdict_evidence.hpp"
 #include "analysis/study_files/recorded_study.hpp"
 #include "analysis/validation/record_check.hpp"
 #include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "base/sha256.hpp"
 #include "scenarios/loop/signals.hpp"
 
@@ -26,10 +31,10 @@ namespace {
 
 /// y0: the controller on its own model under the recorded disturbances, without noise; what is not reached is
 /// zero.
-Eigen::MatrixXd nominal_loop(const Study& study, const AssessedLoop& loop, const QpSolverFactory& factory) {
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(loop.y.rows(), loop.samples());
+Eigen::MatrixXd nominal_loop(const Study& study, const Eigen::MatrixXd& d, const QpSolverFactory& factory) {
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(study.cv_count(), d.cols());
   return run_closed_loop(study, study.plant.G,
-                         {.d = loop.d, .noise = none, .y_d = none, .y_set = setpoints(study)}, factory)
+                         {.d = d, .noise = none, .y_d = none, .y_set = setpoints(study)}, factory)
       .y;
 }
 
@@ -50,34 +55,79 @@ BasisCase basis_of(const Study& study, const QpSolverFactory& factory) {
   return basis;
 }
 
-/// Whether the fault may be one of the model.
-bool may_be_mismatch(const RecordAssessment& assessment) {
-  const FaultSource source = named_source(assessment.verdict());
-  return assessment.found() == RecordVerdict::fault && source != FaultSource::ud &&
-         source != FaultSource::other;
+/// The record since something is wrong: what was before counts in no repair.
+AssessedLoop since_onset(const RecordAssessment& assessment) {
+  AssessedLoop loop = assessment.loop;
+  if (assessment.verdict.model.since)
+    loop.y.leftCols(assessment.verdict.model.since->sample).setConstant(kNaN);
+  return loop;
 }
 
-/// Puts what the corrected channel promises into the assessment, when the verdict names one, and what the
-/// repair of each channel would bring.
-void add_repair(RecordAssessment& assessment, const RecordFrame& frame) {
-  if (!may_be_mismatch(assessment))
+/// The channel that the verdict would repair: that of the mismatch that the first method names, or else
+/// `likelihood`, or else the first one that they name at the dearest CV.
+std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const AssessedLoop& loop,
+                                       const OperatingPoint& point) {
+  const Eigen::Index dearest = assessment.verdict.named_cv();
+  const AssessmentRecord* answer = nullptr;
+  for (const AssessmentRecord* const said : {&assessment.said.front(), &assessment.odds})
+    if (channel_to_repair(*said) && (answer == nullptr || !answer->named_mismatch()))
+      answer = said;
+  if (answer == nullptr)
+    return std::nullopt;
+  const std::optional<NamedMismatch> named = answer->named_mismatch();
+  for (Eigen::Index mv = 0; named && named->channel.cv != dearest && mv < assessment.study.mv_count(); ++mv)
+    if (answer->names({dearest, mv}))
+      return identified_channel(assessment.study, point, loop, {dearest, mv});
+  return channel_repair(assessment.study, point, loop, *answer);
+}
+
+/// What the repair says of the channel, as a mismatch: of one that was identified again as a whole its gain,
+/// where that is not the model's.
+NamedMismatch mismatch_of(const ChannelRepair& repair) {
+  if (repair.named)
+    return *repair.named;
+  const bool has_gain = repair.gain_factor.upper < 1.0 || repair.gain_factor.lower > 1.0;
+  const MismatchParameter parameter =
+      repair.parameter.value_or(has_gain ? MismatchParameter::gain : MismatchParameter::channel);
+  const FittedNumber* const size = parameter == MismatchParameter::gain            ? &repair.gain_factor
+                                   : parameter == MismatchParameter::time_constant ? &repair.time_factor
+                                   : parameter == MismatchParameter::dead_time     ? &repair.dead_time_shift
+                                                                                   : nullptr;
+  return size == nullptr
+             ? NamedMismatch{repair.channel, parameter}
+             : NamedMismatch{repair.channel, parameter, size->value, size->lower, size->upper, size->bound};
+}
+
+/// Puts what the corrected channel promises into the assessment, when the verdict is about the model, and
+/// what the repair of each channel would bring.
+void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictEvidence& evidence) {
+  if (!assessment.verdict.model.has_mismatch())
     return;
   const Study& study = assessment.study;
   const OperatingPoint& point = frame.basis.point;
+  const AssessedLoop loop = since_onset(assessment);
   try {
     std::optional<RepairedChannel> named;
-    if (const auto repair = channel_repair(study, point, assessment.loop, assessment.verdict())) {
-      assessment.repair = promised_repair(study, point, assessment.loop, *repair, frame.factory);
+    if (const auto repair = repair_of(assessment, loop, point)) {
+      evidence.mismatch = mismatch_of(*repair);
+      assessment.repair = promised_repair(study, point, loop, *repair, frame.factory);
       assessment.information =
-          channel_information(study, assessment.loop, repair->channel,
+          channel_information(study, loop, repair->channel,
                               frame.model_error > 0.0 ? frame.model_error : study.assessment.model_error);
+      evidence.tells_apart = assessment.information->rank == assessment.information->parameters;
       named = repair->repaired();
     }
-    if (auto prospects = RepairProspects(study, point, frame.factory).of(assessment.loop, named))
+    if (auto prospects = RepairProspects(study, point, frame.factory).of(loop, named))
       assessment.prospects = ranked(std::move(*prospects));
   } catch (const InputError& error) {
     assessment.no_repair = error.what();
   }
+  const RepairProspect* const prospect = assessment.named_prospect();
+  if (prospect == nullptr || prospect->gains.empty())
+    return;
+  evidence.promise = {prospect->gain(), prospect->gains.front(), prospect->gains.back(),
+                      prospect->variance_ratio};
+  evidence.worth = study.assessment.of<AdequacyOptions>().worth;
 }
 
 /// The gaps of the record, which those of the simulated ones are.
@@ -93,11 +143,12 @@ std::string shape_text(const PlantRecord& record) {
 std::string judged_text(const RecordFrame& frame, const TrialFrame& made, std::string_view seen) {
   return fmt::format(
       "judged as the record {} is: {} samples before it, {} not judged, {:g} of the noise as "
-      "bias, {} % of errors, {}, benchmark {} to {}{}",
+      "bias, {} % of errors, {}, benchmark {} to {}{}, costs since {}",
       digest_of(seen), made.lead, frame.unjudged, made.bias, 100.0 * frame.model_error,
       frame.as_kept.assessment.model == AssessmentModel::benchmark ? "which methods allow for"
                                                                    : "of which methods know nothing",
-      made.record.benchmark.first, made.record.benchmark.second, frame.finds_benchmark ? ", found" : "");
+      made.record.benchmark.first, made.record.benchmark.second, frame.finds_benchmark ? ", found" : "",
+      frame.since);
 }
 
 /// From what simulated records are made: with a model that may be wrong they begin midway where the record
@@ -117,7 +168,7 @@ TrialFrame trial_frame(const RecordAssessment& assessment, const RecordFrame& fr
   const int faulty = trials / 2;
   made.study = trial_study(longer, {.healthy = trials - faulty,
                                     .faulty = faulty,
-                                    .model_error = frame.model_error,
+                                    .model_error = kWorseWorlds * frame.model_error,
                                     .judged = judged_text(frame, made, shape_text(assessment.record))});
   return made;
 }
@@ -134,18 +185,21 @@ void add_trial(RecordAssessment& assessment, const Study& study,
     const auto alike = std::make_shared<RecordFrame>(*frame);
     alike->as_kept.monitoring.reset();
     alike->closed.monitoring.reset();
+    alike->late = 0.0;
     const TrialLoops loops = run_trials({made->study, [alike, made] { return trial_assessor(alike, made); }});
     const std::size_t last = assessment.said.size();
     RecordTrial trial{loops.archive,
                       static_cast<std::int64_t>(loops.records.size()),
                       {},
                       trial_findings(made->study, last, loops.records, assessment.model)};
-    std::optional<TrialGuard> guard;
-    if (frame->model_error > 0.0)
-      guard = {last, trial.model.threshold};
     for (std::size_t method = 0; method < last; ++method)
-      trial.methods.push_back(
-          trial_findings(made->study, method, loops.records, assessment.said[method], guard));
+      trial.methods.push_back(trial_findings(made->study, method, loops.records, assessment.said[method]));
+    const Eigen::Index ny = assessment.study.cv_count();
+    trial.cost = number_thresholds(loops.records, last, kCostNumber, ny);
+    trial.cost_since = number_thresholds(loops.records, last, kCostSinceNumber, ny);
+    trial.health = number_thresholds(loops.records, last, "health", 1)(0);
+    trial.counts_of = [records = loops.records, keeps = loops.keeps, last, threshold = trial.model.threshold](
+                          RecordSource named) { return trial_counts(records, last, threshold, 0, named); };
     assessment.trial = std::move(trial);
   } catch (const InputError& error) {
     assessment.no_trial = fmt::format("no loop like this one can be simulated: {}", error.what());
@@ -179,8 +233,8 @@ void tell_unjudged(RecordAssessment& assessment) {
 }
 
 /// How the record is judged: its study, the nominal loop, and what of it nobody knows.
-std::shared_ptr<const RecordFrame> frame_of(const AssessOptions& options, const Study& study,
-                                            const QpSolverFactory& factory, RecordAssessment& assessment) {
+std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study& study,
+                                      const QpSolverFactory& factory, RecordAssessment& assessment) {
   const auto frame = std::make_shared<RecordFrame>();
   frame->methods = options.methods;
   frame->methods.emplace_back(kModelCheck);
@@ -203,6 +257,7 @@ std::shared_ptr<const RecordFrame> frame_of(const AssessOptions& options, const 
   assessment.study = frame->study_of(options.methods.front());
   frame->basis = basis_of(assessment.study, frame->factory);
   frame->settling = slowest_settling(study);
+  frame->y0 = nominal_loop(assessment.study, assessment.record.d, frame->factory);
   frame->unjudged =
       samples_to_settle(assessment.study, frame->basis.point, assessment.record, study.data.start);
   if (frame->unjudged == 0 && frame->model_error > 0.0 && study.data.start == RecordStart::automatic &&
@@ -222,12 +277,104 @@ AssessmentRecord odds_of(const RecordFrame& frame, const RecordAssessment& asses
   return RecordPanel(alone).judge(assessment.record).said.front();
 }
 
+/// Costs of the record itself from this sample on.
+std::vector<CvCost> costs_since(const RecordFrame& frame, const RecordAssessment& assessment,
+                                Eigen::Index from) {
+  if (!assessment.model.answered())
+    return {};
+  return cv_costs(frame.as_kept, assessment.record.y, frame.y0, assessment.model.values("noise").col(0),
+                  std::max(from, frame.unjudged));
+}
+
+/// Since when the CV is wrong that the model explains least.
+std::optional<FaultOnset> onset_of(const RecordFrame& frame, const RecordAssessment& assessment,
+                                   double threshold) {
+  if (!assessment.model.answered() || !(assessment.model.score > threshold) ||
+      assessment.model.predicted_cv < 0)
+    return std::nullopt;
+  return fault_onset(
+      ChannelErrorFits(frame.as_kept, frame.model_error).of(assessment.loop, assessment.model.predicted_cv),
+      threshold);
+}
+
+/// The channels in periods of the record, and the error of a gain that the record as a whole would show.
+double add_health(const RecordFrame& frame, RecordAssessment& assessment) {
+  if (!assessment.model.answered() || frame.model_error == 0.0)
+    return 0.0;
+  const ChannelErrorFits fits(frame.as_kept, frame.model_error);
+  const Eigen::Index samples = assessment.loop.samples();
+  assessment.periods = health_periods(samples, frame.settling);
+  double visible = kInfinity;
+  for (Eigen::Index cv = 0; cv < assessment.loop.y.rows(); ++cv) {
+    const ChannelErrorFit fit = fits.of(assessment.loop, cv);
+    for (ChannelHistory& history :
+         channel_histories(fit, cv, assessment.periods, samples, assessment.health_threshold()))
+      assessment.health.push_back(std::move(history));
+    for (const ChannelHistory& whole : channel_histories(fit, cv, {0}, samples, assessment.model_threshold()))
+      visible = std::min(visible, whole.periods.front().visible);
+  }
+  return visible;
+}
+
+/// All that the verdict rests on but for source and repair.
+VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessment) {
+  VerdictEvidence evidence;
+  if (assessment.model.answered())
+    evidence.model_scores = assessment.model.values("cv_score").col(0);
+  evidence.model_threshold = assessment.model_threshold();
+  for (const UnexplainedCv& each : assessment.unexplained)
+    evidence.noisy.push_back({each.cv, each.noise, kMostNoise, true});
+  evidence.least_visible = add_health(frame, assessment);
+  evidence.onset = onset_of(frame, assessment, evidence.model_threshold);
+  const bool since = evidence.onset && evidence.onset->sample == frame.since;
+  if (!since)
+    evidence.onset.reset();
+  evidence.costs = since ? costs_since(frame, assessment, frame.since) : assessment.costs;
+  if (assessment.trial)
+    for (CvCost& cost : evidence.costs)
+      cost.threshold = (since ? assessment.trial->cost_since : assessment.trial->cost)(cost.cv);
+  evidence.controller_is_alike = assessment.controller.is_alike();
+  evidence.late = frame.late;
+  evidence.late_is_corrected = frame.late != 0.0;
+  if (assessment.trial)
+    evidence.trials = assessment.trial->counts_of(RecordSource::unknown);
+  return evidence;
+}
+
+/// What may be the matter with a record that the model does not explain.
+void add_sources(const RecordFrame& frame, RecordAssessment& assessment, VerdictEvidence& evidence) {
+  assessment.odds = odds_of(frame, assessment);
+  evidence.weights = source_weights(assessment.odds, assessment.said.front());
+  if (frame.model_error > 0.0) {
+    RecordAlternatives alternatives =
+        record_alternatives(frame.as_kept, assessment.loop, frame.model_error, evidence.onset);
+    if (frame.late != 0.0)
+      alternatives.data = -kInfinity;  // nothing is left of it
+    evidence.weights = with_alternatives(evidence.weights, alternatives);
+    evidence.valve_mv = alternatives.valve_mv;
+    evidence.sensor_cv = alternatives.sensor_cv;
+    if (frame.late == 0.0) {
+      evidence.late_cv = alternatives.data_cv;
+      evidence.late = alternatives.late;
+    }
+    return;
+  }
+  for (const AssessmentRecord* const said : {&assessment.odds, &assessment.said.front()})
+    if (const double valve = said->number("valve_mv"); !std::isnan(valve))
+      evidence.valve_mv = static_cast<Eigen::Index>(valve);
+}
+
 /// The record as it is judged, without the simulated ones beside it.
 std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Study& study,
                                          const QpSolverFactory& factory, RecordAssessment& assessment) {
   assessment.warnings = check_record(study, assessment.record);
-  std::shared_ptr<const RecordFrame> frame = frame_of(options, study, factory, assessment);
+  const std::shared_ptr<RecordFrame> frame = frame_of(options, study, factory, assessment);
   JudgedRecord judged = RecordPanel(*frame).judge(assessment.record);
+  if (frame->model_error > 0.0 && judged.said.back().answered() && judged.said.back().score > kFarTooLarge) {
+    frame->late = common_lateness(frame->as_kept, judged.loop, frame->model_error);
+    if (frame->late != 0.0)
+      judged = RecordPanel(*frame).judge(assessment.record);
+  }
   assessment.record.benchmark = judged.benchmark;
   assessment.loop = std::move(judged.loop);
   assessment.model = std::move(judged.said.back());
@@ -237,7 +384,10 @@ std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Stu
   tell_benchmark(*frame, assessment);
   for (std::string& warning : column_lags(*frame, assessment.record))
     assessment.warnings.push_back(std::move(warning));
-  assessment.y0 = nominal_loop(assessment.study, assessment.loop, frame->factory);
+  assessment.y0 = frame->y0;
+  if (const std::optional<FaultOnset> onset = onset_of(*frame, assessment, kFarTooLarge))
+    frame->since = onset->sample;
+  assessment.costs = costs_since(*frame, assessment, frame->unjudged);
   assessment.controller = check_controller(*frame, assessment.record, assessment.loop);
   assessment.warnings.insert(assessment.warnings.begin(), assessment.record.warnings.begin(),
                              assessment.record.warnings.end());
@@ -246,36 +396,20 @@ std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Stu
 
 }  // namespace
 
-RecordAnswers RecordAssessment::answers_of(std::size_t method) const {
-  return {.said = said[method],
-          .trial_of_said = trial_of(method),
-          .model = model,
-          .trial_of_model = trial ? &trial->model : nullptr,
-          .allows_errors = model_error > 0.0,
-          .has_unexplained = !unexplained.empty()};
+bool RecordAssessment::is_flagged(std::size_t method) const {
+  const AssessmentRecord& of = said[method];
+  const TrialFindings* const found = trial_of(method);
+  return of.answered() &&
+         (found == nullptr || std::isnan(found->threshold) ? of.flagged : of.score > found->threshold);
 }
 
 Eigen::Index worst_cv(const RecordAssessment& of) {
-  if (!of.unexplained.empty())
-    return of.unexplained.front().cv;
-  if (of.found() == RecordVerdict::fault && of.verdict().predicted_cv >= 0)
-    return of.verdict().predicted_cv;
-  return std::max<Eigen::Index>(0, of.model.predicted_cv);
+  const Eigen::Index named = of.verdict.named_cv();
+  return named >= 0 ? named : std::max<Eigen::Index>(0, of.model.predicted_cv);
 }
 
 const RepairProspect* RecordAssessment::named_prospect() const {
   return repair ? prospect_of(prospects, repair->repair.channel) : nullptr;
-}
-
-std::optional<FaultOdds> RecordAssessment::fault_odds() const {
-  if (!odds.answered())
-    return std::nullopt;
-  const FaultOdds of{odds.number("p_mpm"), odds.number("p_ud"), odds.number("p_both"),
-                     odds.number("p_other")};
-  const double fault = of.mpm + of.ud + of.mpm_ud + of.other;
-  if (!(fault > 0.0))
-    return std::nullopt;
-  return FaultOdds{of.mpm / fault, of.ud / fault, of.mpm_ud / fault, of.other / fault};
 }
 
 TrialRunner trials_in_memory(QpSolverFactory factory) {
@@ -306,9 +440,17 @@ RecordAssessment assess_record(const Study& study, PlantRecord record, const Ass
   assessment.record = std::move(record);
   const std::shared_ptr<const RecordFrame> frame = judge(options, checked, factory, assessment);
   add_trial(assessment, checked, frame, options.trials, run_trials);
-  if (assessment.found() == RecordVerdict::fault)
-    assessment.odds = odds_of(*frame, assessment);
-  add_repair(assessment, *frame);
+  VerdictEvidence evidence = evidence_of(*frame, assessment);
+  assessment.verdict = record_verdict(evidence);
+  if (assessment.verdict.model.answer == ModelAnswer::fails) {
+    add_sources(*frame, assessment, evidence);
+    if (assessment.trial)
+      evidence.trials = assessment.trial->counts =
+          assessment.trial->counts_of(record_verdict(evidence).model.source);
+    assessment.verdict = record_verdict(evidence);
+    add_repair(assessment, *frame, evidence);
+    assessment.verdict = record_verdict(evidence);
+  }
   return assessment;
 }
 

@@ -15,6 +15,7 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
 #include "analysis/methods/ours/repair_prospects.hpp"
+#include "analysis/records/channel_health.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/controller_check.hpp"
 #include "analysis/records/model_check.hpp"
@@ -35,12 +36,11 @@ struct RecordTrial {
   std::int64_t loops = 0;
   std::vector<TrialFindings> methods;  ///< in the order of the answers
   TrialFindings model;                 ///< of RecordAssessment::model
-};
-
-/// How probable each kind of fault is, given that there is one; they sum to 1.
-struct FaultOdds {
-  double mpm, ud, mpm_ud;
-  double other;  ///< a valve that sticks
+  Eigen::VectorXd cost = {},
+                  cost_since = {};  ///< thresholds of the costs of the CVs, ny (number_thresholds())
+  double health = kNaN;             ///< that of the score of a channel in a period
+  TrialCounts counts = {};          ///< of the source that the verdict names
+  std::function<TrialCounts(RecordSource)> counts_of = {};
 };
 
 /// What the methods say of a record of a plant, and what a person needs to judge it.
@@ -52,13 +52,16 @@ struct RecordAssessment {
   AssessedLoop loop;
   Eigen::MatrixXd y0;                  ///< ny x N, the nominal loop under the recorded disturbances
   Eigen::Index unjudged = 0;           ///< samples at the start that only fill the memory of the model
-  std::vector<AssessmentRecord> said;  ///< by each method; the first one is the verdict
+  std::vector<AssessmentRecord> said;  ///< by each method; the first one has the word on the source
   AssessmentRecord model;              ///< model_check_method()
   std::vector<UnexplainedCv> unexplained = {};
-  AssessmentRecord odds = {};  ///< `likelihood`, of a record with a fault: of which kind it is
+  AssessmentRecord odds = {};  ///< `likelihood`, of a record that the model does not explain
   ControllerCheck controller;
-  double model_error = 0.0;  ///< RecordFrame::model_error
-  DataOptions data;          ///< of the study, by which the record was read
+  double model_error = 0.0;                 ///< RecordFrame::model_error
+  std::vector<CvCost> costs = {};           ///< over all judged samples
+  std::vector<Eigen::Index> periods = {};   ///< health_periods()
+  std::vector<ChannelHistory> health = {};  ///< of all channels, CV by CV
+  DataOptions data;                         ///< of the study, by which the record was read
   std::optional<PromisedRepair> repair;
   std::optional<ChannelInformation> information = {};  ///< of the channel of the repair
   std::vector<RepairProspect> prospects = {};          ///< ranked(), of a fault that may be the model's
@@ -66,27 +69,29 @@ struct RecordAssessment {
   std::optional<RecordTrial> trial;
   std::string no_trial;  ///< why there is none
   std::vector<std::string> warnings;
+  RecordVerdict verdict;  ///< what all of this comes to
 
-  const AssessmentRecord& verdict() const { return said.front(); }
   /// What the method in this place made of the simulated records; null without any.
   const TrialFindings* trial_of(std::size_t method) const {
     return trial ? &trial->methods[method] : nullptr;
   }
-  RecordAnswers answers_of(std::size_t method) const;
-  RecordVerdict found() const { return record_verdict(answers_of(0), controller); }
-  /// None of a record without a fault, or without an answer.
-  std::optional<FaultOdds> fault_odds() const;
+  /// Is its score above that of simulated records without a fault? Without those, does it flag the record?
+  bool is_flagged(std::size_t method) const;
+  /// That of the score of the model: of the simulated records, or kFarTooLarge without any.
+  double model_threshold() const { return trial ? trial->model.threshold : kFarTooLarge; }
+  /// The same of the health of channels.
+  double health_threshold() const { return trial ? trial->health : kFarTooLarge; }
   /// Of the channel that the verdict names; null where it was not run.
   const RepairProspect* named_prospect() const;
 };
 
-/// The CV that a person looks at first: the first one of `unexplained`, otherwise that of the verdict, or the
-/// one that the model explains least.
+/// The CV that a person looks at first: the one that the verdict names, or else the one that the model
+/// explains least.
 Eigen::Index worst_cv(const RecordAssessment& assessment);
 
 /// How a record is assessed.
 struct AssessOptions {
-  std::vector<std::string> methods{"mpmbench"};  ///< the first one gives the verdict
+  std::vector<std::string> methods{"mpmbench"};  ///< the first one has the word on the source of a fault
   /// Standard deviation of the errors that a healthy model may have, of gain, time constants and dead time of
   /// every channel; 0: the model is exact.
   double model_error = 0.05;
@@ -114,11 +119,11 @@ using TrialRunner = std::function<TrialLoops(const TrialRequest&)>;
 TrialRunner trials_in_memory(QpSolverFactory factory);
 
 /// The record, read under `study`, as its methods see it: the nominal loop under what moved the plant, the
-/// answers, the check of the model and of the controller, the simulated records beside it, and what a repair
-/// of the channel that is named would bring. `run_trials` runs the simulated records; without them, or where
-/// they cannot be run, RecordAssessment::no_trial says why. Errors: InputError for a record that the study
-/// cannot explain: units, limits, a controller without a model, too few samples; what `run_trials` throws
-/// besides InputError.
+/// answers, the check of the model and of the controller, the simulated records beside it, what a repair of
+/// the channel that is named would bring, and the verdict. `run_trials` runs the simulated records; without
+/// them, or where they cannot be run, RecordAssessment::no_trial says why. Errors: InputError for a record
+/// that the study cannot explain: units, limits, a controller without a model, too few samples; what
+/// `run_trials` throws besides InputError.
 RecordAssessment assess_record(const Study& study, PlantRecord record, const AssessOptions& options,
                                const QpSolverFactory& factory, const TrialRunner& run_trials);
 

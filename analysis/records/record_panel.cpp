@@ -9,6 +9,9 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
+#include "analysis/records/cv_costs.hpp"
+#include "analysis/records/model_check.hpp"
+#include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/validation/benchmark_period.hpp"
 #include "base/error.hpp"
@@ -97,6 +100,18 @@ std::pair<Eigen::Index, Eigen::Index> benchmark_of(const RecordFrame& frame, con
   return found;
 }
 
+/// Puts the costs of the CVs into the answer of model_check_method().
+void add_costs(const RecordFrame& frame, const PlantRecord& record, AssessmentRecord& said) {
+  if (frame.y0.size() == 0 || said.form->method().name != kModelCheck || !said.answered())
+    return;
+  const Eigen::VectorXd noise = said.values("noise").col(0);
+  for (const auto& [number, from] :
+       {std::pair{kCostNumber, frame.unjudged}, std::pair{kCostSinceNumber, frame.since}})
+    for (const CvCost& cost :
+         cv_costs(frame.as_kept, record.y, frame.y0, noise, std::max(from, frame.unjudged)))
+      said.set_number(number, cost.ratio, cost.cv);
+}
+
 }  // namespace
 
 const Study& RecordFrame::study_of(const std::string& method) const {
@@ -115,6 +130,8 @@ std::vector<bool> unknown_samples(const PlantRecord& record) {
 AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record) {
   const Study& study = frame.as_kept;
   AssessedLoop loop = assessed_loop(study, frame.basis.point, record, frame.unjudged);
+  for (Eigen::Index cv = 0; frame.late != 0.0 && cv < loop.y_sim.rows(); ++cv)
+    loop.y_sim.row(cv) = late_by(loop.y_sim.row(cv), frame.late);
   const std::vector<bool> unknown = unknown_samples(record);
   leave_out_unknown(frame, unknown, loop.y);
   if (frame.model_error == 0.0)
@@ -176,8 +193,10 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
         group.panel = panel_with(nullptr);
       said = group.panel->assess(seen(judged.loop));
     }
-    for (std::size_t m = 0; m < said.size(); ++m)
+    for (std::size_t m = 0; m < said.size(); ++m) {
+      add_costs(frame_, record, said[m]);
       judged.said[group.places[m]] = std::move(said[m]);
+    }
   }
   return judged;
 }

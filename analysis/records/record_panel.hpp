@@ -34,6 +34,9 @@ struct RecordFrame {
   Eigen::Index settling = 0;     ///< samples after a gap of the inputs that do the same
   double model_error = 0.0;      ///< errors that the model may have, a standard deviation; 0: it is exact
   bool finds_benchmark = false;  ///< data.benchmark = "found"
+  Eigen::MatrixXd y0 = {};       ///< ny x N, the nominal loop; empty: no cost is asked for
+  double late = 0.0;             ///< samples by which all CVs of the record are late (common_lateness())
+  Eigen::Index since = 0;        ///< sample from which on costs are asked for besides
 
   const Study& study_of(const std::string& method) const;
 };
@@ -62,6 +65,7 @@ class RecordPanel {
   /// The frame must outlive the panel. Throws InputError for options of a method that do not fit.
   explicit RecordPanel(const RecordFrame& frame);
 
+  /// Answers of model_check_method() have the costs of the CVs as well (cv_costs()), where the frame has y0.
   /// `healthy` is the same loop without its fault, from which a chosen benchmark is taken; null: the record
   /// itself. Throws InputError when no benchmark is found.
   JudgedRecord judge(const PlantRecord& record, const PlantRecord* healthy = nullptr);

@@ -1,45 +1,226 @@
 #include "analysis/records/record_verdict.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "analysis/methods/ours/repair_prospects.hpp"
+
 namespace mpm {
+namespace {
 
-const char* to_string(RecordVerdict verdict) {
-  switch (verdict) {
-    case RecordVerdict::none:
-      return "none";
-    case RecordVerdict::nothing:
-      return "nothing";
-    case RecordVerdict::other_controller:
-      return "other_controller";
-    case RecordVerdict::unexplained_cost:
-      return "unexplained_cost";
-    case RecordVerdict::fault:
-      return "fault";
+constexpr double kHalfAGain = 0.5;  ///< an error of a gain that a record must show, or it tells nothing
+
+constexpr RecordSource kFaults[] = {RecordSource::mismatch, RecordSource::disturbance, RecordSource::both,
+                                    RecordSource::sensor,   RecordSource::valve,       RecordSource::data,
+                                    RecordSource::unknown};
+
+const CvCost* cost_of(const std::vector<CvCost>& costs, Eigen::Index cv) {
+  const auto found =
+      std::find_if(costs.begin(), costs.end(), [cv](const CvCost& cost) { return cost.cv == cv; });
+  return found == costs.end() ? nullptr : &*found;
+}
+
+/// Dearer CVs first, the largest ratio first.
+bool costs_more(const CvCost& a, const CvCost& b) {
+  return a.is_dearer() != b.is_dearer() ? a.is_dearer() : a.ratio > b.ratio;
+}
+
+/// The CVs that the model does not explain: those that cost more first, the dearest first, and then the one
+/// furthest off.
+std::vector<UnexplainedPart> unexplained_parts(const VerdictEvidence& evidence) {
+  std::vector<UnexplainedPart> parts = evidence.noisy;
+  for (Eigen::Index cv = 0; cv < evidence.model_scores.size(); ++cv) {
+    const bool is_noisy =
+        std::any_of(parts.begin(), parts.end(), [cv](const UnexplainedPart& part) { return part.cv == cv; });
+    if (evidence.model_scores(cv) > evidence.model_threshold && !is_noisy)
+      parts.push_back({cv, evidence.model_scores(cv), evidence.model_threshold});
   }
-  return "none";
+  const auto excess = [&evidence](const UnexplainedPart& part) {
+    const CvCost* const cost = cost_of(evidence.costs, part.cv);
+    return cost != nullptr && cost->is_dearer() ? cost->ratio : 0.0;
+  };
+  std::stable_sort(parts.begin(), parts.end(), [&excess](const UnexplainedPart& a, const UnexplainedPart& b) {
+    return excess(a) != excess(b) ? excess(a) > excess(b) : a.score > b.score;
+  });
+  return parts;
 }
 
-bool is_above(const AssessmentRecord& said, const TrialFindings* trial) {
-  return said.answered() && (trial == nullptr ? said.flagged : said.score > trial->threshold);
+OfSources probabilities_of(const VerdictEvidence& evidence, bool fails) {
+  const TrialCounts& counts = *evidence.trials;
+  const auto share = [](std::int64_t hits, std::int64_t all) {
+    return (static_cast<double>(hits) + 1.0) / (static_cast<double>(all) + 2.0);
+  };
+  OfSources probabilities;
+  const double nothing =
+      fails ? share(counts.healthy_above, counts.above) : share(counts.healthy_below, counts.below);
+  probabilities[RecordSource::nothing] = nothing;
+  double sum = 0.0;
+  for (const RecordSource source : kFaults)
+    sum += evidence.weights[source];
+  const double trust = sum > 0.0 ? share(counts.right, counts.same) : 0.0;
+  for (const RecordSource source : kFaults)
+    probabilities[source] = (1.0 - nothing) * ((sum > 0.0 ? trust * evidence.weights[source] / sum : 0.0) +
+                                               (1.0 - trust) / static_cast<double>(std::size(kFaults)));
+  return probabilities;
 }
 
-bool RecordAnswers::model_explains() const {
-  return allows_errors && model.answered() && !has_unexplained && !is_above(model, trial_of_model);
+/// The most probable one by the evidence, which the probabilities keep.
+RecordSource likeliest(const OfSources& weights) {
+  RecordSource best = RecordSource::unknown;
+  for (const RecordSource source : kFaults)
+    if (weights[source] > weights[best])
+      best = source;
+  return best;
 }
 
-bool RecordAnswers::has_fault() const {
-  if (!said.answered() || !said.flagged)
-    return false;
-  return allows_errors && model.answered() ? !model_explains() : is_above(said, trial_of_said);
+RecordVerdict::Model model_answer(const VerdictEvidence& evidence) {
+  RecordVerdict::Model model;
+  const auto known = !evidence.model_scores.array().isNaN();
+  const bool has_scores = known.any() && !std::isnan(evidence.model_threshold);
+  model.threshold = evidence.model_threshold;
+  if (has_scores)
+    model.score = known.select(evidence.model_scores.array(), -kInfinity).maxCoeff();
+  model.at = unexplained_parts(evidence);
+  const bool fails = !model.at.empty();
+  model.answer = fails                                                ? ModelAnswer::fails
+                 : has_scores && evidence.least_visible <= kHalfAGain ? ModelAnswer::explains
+                                                                      : ModelAnswer::cannot_tell;
+  if (evidence.trials && (fails || has_scores))
+    model.probabilities = probabilities_of(evidence, fails);
+  model.late_is_corrected = evidence.late_is_corrected;
+  if (evidence.late_is_corrected)
+    model.late = evidence.late;
+  if (!fails)
+    return model;
+  model.since = evidence.onset;
+  model.source = likeliest(evidence.weights);
+  if (model.has_mismatch())
+    model.mismatch = evidence.mismatch;
+  if (model.source == RecordSource::valve)
+    model.valve_mv = evidence.valve_mv;
+  if (model.source == RecordSource::sensor)
+    model.sensor_cv = evidence.sensor_cv;
+  if (model.source == RecordSource::data && !evidence.late_is_corrected) {
+    model.late = evidence.late;
+    model.late_cv = evidence.late_cv;
+  }
+  return model;
 }
 
-RecordVerdict record_verdict(const RecordAnswers& answers, const ControllerCheck& controller) {
-  if (!answers.said.answered())
-    return RecordVerdict::none;
-  if (answers.has_fault())
-    return RecordVerdict::fault;
-  if (!answers.model_explains() || !is_above(answers.said, answers.trial_of_said))
-    return RecordVerdict::nothing;
-  return controller.is_alike() ? RecordVerdict::unexplained_cost : RecordVerdict::other_controller;
+RecordVerdict::Loop loop_answer(const VerdictEvidence& evidence) {
+  RecordVerdict::Loop loop;
+  std::copy_if(evidence.costs.begin(), evidence.costs.end(), std::back_inserter(loop.costs),
+               [](const CvCost& cost) { return !std::isnan(cost.ratio); });
+  std::stable_sort(loop.costs.begin(), loop.costs.end(), costs_more);
+  const bool is_known = std::any_of(loop.costs.begin(), loop.costs.end(),
+                                    [](const CvCost& cost) { return !std::isnan(cost.threshold); });
+  const bool is_dearer =
+      std::any_of(loop.costs.begin(), loop.costs.end(), [](const CvCost& cost) { return cost.is_dearer(); });
+  loop.answer = is_dearer ? LoopAnswer::dearer : is_known ? LoopAnswer::as_designed : LoopAnswer::cannot_tell;
+  return loop;
+}
+
+/// What to do about a mismatch.
+RecordVerdict::Action action_on_channel(const VerdictEvidence& evidence, const RecordVerdict& verdict) {
+  RecordVerdict::Action action{.kind = ActionKind::test};
+  if (!verdict.model.mismatch)
+    return action;
+  action.channel = verdict.model.mismatch->channel;
+  const bool is_dearer = verdict.loop.answer == LoopAnswer::dearer;
+  if (!evidence.promise) {
+    action.kind = is_dearer ? ActionKind::test : ActionKind::wait;
+    return action;
+  }
+  const Eigen::VectorXd& ratio = evidence.promise->variance_ratio;
+  for (Eigen::Index cv = 0; cv < ratio.size(); ++cv)
+    if (ratio(cv) > kNoticeableChange)
+      action.worsened.push_back(cv);
+  if (!action.worsened.empty())
+    return action;
+  action.promise = evidence.promise;
+  const bool has_size = evidence.tells_apart || !std::isnan(verdict.model.mismatch->size);
+  if (evidence.promise->gain > (is_dearer ? 0.0 : evidence.worth))
+    action.kind = has_size ? ActionKind::repair : ActionKind::test;
+  else
+    action.kind = is_dearer ? ActionKind::test : ActionKind::wait;
+  return action;
+}
+
+RecordVerdict::Action action_on(const VerdictEvidence& evidence, const RecordVerdict& verdict) {
+  const RecordVerdict::Model& model = verdict.model;
+  const bool is_dearer = verdict.loop.answer == LoopAnswer::dearer;
+  if (model.answer != ModelAnswer::fails) {
+    if (is_dearer || !evidence.controller_is_alike)
+      return {.kind = evidence.controller_is_alike ? ActionKind::limit : ActionKind::controller};
+    if (model.late_is_corrected)
+      return {.kind = ActionKind::column};
+    return {.kind = model.answer == ModelAnswer::explains && verdict.loop.answer == LoopAnswer::as_designed
+                        ? ActionKind::nothing
+                        : ActionKind::wait};
+  }
+  if (model.at.front().is_noise)
+    return {.kind = ActionKind::sensor, .cv = model.at.front().cv};
+  switch (model.source) {
+    case RecordSource::mismatch:
+    case RecordSource::both:
+      return action_on_channel(evidence, verdict);
+    case RecordSource::disturbance:
+      return {.kind = is_dearer ? ActionKind::disturbance : ActionKind::wait, .cv = model.at.front().cv};
+    case RecordSource::sensor:
+      return {.kind = ActionKind::sensor, .cv = model.sensor_cv < 0 ? model.at.front().cv : model.sensor_cv};
+    case RecordSource::valve:
+      return {.kind = model.valve_mv < 0 ? ActionKind::test : ActionKind::valve, .mv = model.valve_mv};
+    case RecordSource::data:
+      return {.kind = ActionKind::column};
+    case RecordSource::nothing:
+    case RecordSource::unknown:
+      break;
+  }
+  return {.kind = ActionKind::test};
+}
+
+/// A gain and changes of variances that point the same way, or the gain alone.
+std::optional<PromisedGain> in_agreement(std::optional<PromisedGain> promise) {
+  if (!promise || promise->variance_ratio.size() == 0)
+    return promise;
+  const bool falls = (promise->variance_ratio.array() < 1.0).any(),
+             rises = (promise->variance_ratio.array() > 1.0).any();
+  if (promise->gain > 0.0 ? !falls : falls && !rises)
+    promise->variance_ratio.resize(0);
+  return promise;
+}
+
+}  // namespace
+
+Eigen::Index RecordVerdict::named_cv() const {
+  return !model.at.empty()                                          ? model.at.front().cv
+         : !loop.costs.empty() && loop.answer == LoopAnswer::dearer ? loop.costs.front().cv
+                                                                    : -1;
+}
+
+bool RecordVerdict::names_dearest() const {
+  return loop.answer != LoopAnswer::dearer || loop.costs.front().cv == named_cv();
+}
+
+const char* RecordVerdict::found() const {
+  if (model.answer == ModelAnswer::fails)
+    return "fault";
+  if (loop.answer == LoopAnswer::dearer)
+    return controller_is_alike ? "unexplained_cost" : "other_controller";
+  if (model.answer == ModelAnswer::cannot_tell && loop.answer == LoopAnswer::cannot_tell)
+    return "none";
+  return controller_is_alike ? "nothing" : "other_controller";
+}
+
+RecordVerdict record_verdict(const VerdictEvidence& evidence) {
+  RecordVerdict verdict{.model = model_answer(evidence), .loop = loop_answer(evidence), .action = {}};
+  verdict.has_trials = evidence.trials.has_value();
+  verdict.controller_is_alike = evidence.controller_is_alike;
+  verdict.action = action_on(evidence, verdict);
+  verdict.action.promise = in_agreement(std::move(verdict.action.promise));
+  return verdict;
 }
 
 }  // namespace mpm

@@ -1,45 +1,192 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "analysis/findings/trial_findings.hpp"
-#include "analysis/methods/assessment_record.hpp"
-#include "analysis/records/controller_check.hpp"
+#include <Eigen/Core>
+
+#include "analysis/methods/assessment.hpp"
+#include "base/enum_words.hpp"
+#include "base/non_finite.hpp"
+
+// The verdict on a record of a plant: three questions, three answers, one value. Text, page, JSON and Python
+// show this value and decide nothing.
 
 namespace mpm {
 
-/// What is found in a record, in the order in which it is judged.
-enum class RecordVerdict : std::int8_t {
-  none,              ///< the method gives no verdict
-  nothing,           ///< nothing that is worth a repair
-  other_controller,  ///< the model explains the record, and the variances are not those of this controller
-  unexplained_cost,  ///< the model explains the record, and the controller ran; the variances are still
-                     ///< others
-  fault,             ///< what the method says
+/// What is the matter with a record. Exactly one is true.
+enum class RecordSource : std::int8_t {
+  nothing,
+  mismatch,     ///< of the model alone
+  disturbance,  ///< unmeasured, on a CV or an MV, alone
+  both,         ///< a mismatch and a disturbance
+  sensor,       ///< drifts or is biased
+  valve,        ///< sticks
+  data,         ///< the clock of the record: columns that are early or late, averages
+  unknown,      ///< none of these
+};
+template <>
+inline constexpr auto kWords<RecordSource> = word_list("nothing", "mismatch", "disturbance", "both", "sensor",
+                                                       "valve", "data", "none_of_these");
+
+inline constexpr std::size_t kRecordSources = kWords<RecordSource>.size();
+
+/// A number for each source.
+struct OfSources {
+  std::array<double, kRecordSources> each{};
+
+  double& operator[](RecordSource source) { return each[static_cast<std::size_t>(source)]; }
+  double operator[](RecordSource source) const { return each[static_cast<std::size_t>(source)]; }
 };
 
-/// "none", "nothing", "other_controller", "unexplained_cost", "fault"
-const char* to_string(RecordVerdict verdict);
+/// Does the model still explain the record?
+enum class ModelAnswer : std::int8_t { explains, fails, cannot_tell };
+template <>
+inline constexpr auto kWords<ModelAnswer> = word_list("explains", "fails", "cannot_tell");
 
-/// Is the score above that of simulated records without a fault? Without those, does the method say so?
-bool is_above(const AssessmentRecord& said, const TrialFindings* trial);
+/// What does the loop cost against the loop as designed?
+enum class LoopAnswer : std::int8_t { as_designed, dearer, cannot_tell };
+template <>
+inline constexpr auto kWords<LoopAnswer> = word_list("as_designed", "dearer", "cannot_tell");
 
-/// The answers on a record that decide together, each with its findings on simulated records, null without
-/// any.
-struct RecordAnswers {
-  const AssessmentRecord& said;  ///< by the method of the verdict
-  const TrialFindings* trial_of_said;
-  const AssessmentRecord& model;  ///< of model_check_method()
-  const TrialFindings* trial_of_model;
-  bool allows_errors;  ///< errors of the model are allowed for; otherwise the method has the only word
-  bool has_unexplained = false;  ///< there are unexplained_cvs()
+enum class ActionKind : std::int8_t {
+  nothing,
+  repair,       ///< this channel by that much
+  sensor,       ///< look at the sensor of a CV,
+  valve,        ///< at the valve of an MV,
+  column,       ///< at the columns of the record,
+  controller,   ///< at the controller of the study, which is not the one that ran,
+  limit,        ///< at limits, tuning and the operating point, or
+  disturbance,  ///< for what disturbs a CV
+  test,         ///< move the MV of a channel, or all of them
+  wait,
+};
+template <>
+inline constexpr auto kWords<ActionKind> = word_list("nothing", "repair", "sensor", "valve", "column",
+                                                     "controller", "limit", "disturbance", "test", "wait");
 
-  bool model_explains() const;
-  /// Does the method flag the record, and does the model not explain it?
-  bool has_fault() const;
+/// A CV that the model does not explain: `score` is above `threshold`.
+struct UnexplainedPart {
+  Eigen::Index cv;
+  double score, threshold;
+  /// The score is the noise of the CV over that of the study (UnexplainedCv), not that of
+  /// model_check_method().
+  bool is_noise = false;
 };
 
-RecordVerdict record_verdict(const RecordAnswers& answers, const ControllerCheck& controller);
+/// What a CV costs its controller, by cv_costs().
+struct CvCost {
+  Eigen::Index cv = 0;
+  bool has_setpoint = true;          ///< no: a range
+  double now = 0.0, designed = 0.0;  ///< mean squares, CV unit squared
+  double ratio = 1.0;                ///< of them: 1 as designed
+  double threshold = kNaN;  ///< above which simulated records without a fault hardly ever are; NaN: unknown
+
+  /// One that costs less than designed is no damage.
+  bool is_dearer() const { return ratio > threshold && ratio > 1.0; }
+};
+
+/// Samples of the record: the likeliest one from which on something is wrong, and its interval.
+struct FaultOnset {
+  Eigen::Index sample, earliest, latest;
+};
+
+/// What a repair is expected to take away of the cost of the loop, as shares of it.
+struct PromisedGain {
+  double gain, lower, upper;
+  Eigen::VectorXd variance_ratio = {};  ///< ny, of each CV after the repair over before it; empty: not known
+};
+
+/// How often simulated records of which the same was said had what was said.
+struct TrialCounts {
+  std::int64_t healthy_above = 0, above = 0;  ///< score above the threshold: without a fault; all
+  std::int64_t healthy_below = 0, below = 0;
+  std::int64_t right = 0, same = 0;  ///< with the source that is named, of those of which it was named
+};
+
+/// All that the verdict rests on.
+struct VerdictEvidence {
+  /// Of model_check_method(), ny; NaN: nothing is known of the CV. Empty: it has no answer.
+  Eigen::VectorXd model_scores;
+  double model_threshold = kNaN;
+  std::vector<UnexplainedPart> noisy = {};  ///< CVs whose noise is another
+  double least_visible = 0.0;               ///< relative error of a gain that the record would show
+  std::optional<TrialCounts> trials = {};   ///< none: there are no simulated records
+  std::optional<FaultOnset> onset = {};
+  std::vector<CvCost> costs = {};  ///< since the onset where there is one
+  /// Posterior of the sources, given that there is one; need not sum to 1.
+  OfSources weights = {};
+  std::optional<NamedMismatch> mismatch = {};  ///< what is wrong with the model
+  Eigen::Index valve_mv = -1, sensor_cv = -1;
+  Eigen::Index late_cv = -1;  ///< of data; -1: all CVs
+  double late = 0.0;          ///< samples by which they are late against the inputs, below 0: early
+  bool late_is_corrected = false;
+  std::optional<PromisedGain> promise = {};  ///< of the repair of its channel
+  double worth = 0.1;       ///< gain from which on a channel is repaired that costs nothing (AdequacyOptions)
+  bool tells_apart = true;  ///< the record tells the parameters of this channel apart
+  bool controller_is_alike = true;
+};
+
+/// The verdict. record_verdict() makes it, and nothing changes it.
+struct RecordVerdict {
+  struct Model {
+    ModelAnswer answer = ModelAnswer::cannot_tell;
+    std::vector<UnexplainedPart> at = {};   ///< dearer ones first, then by score
+    double score = kNaN, threshold = kNaN;  ///< the largest of the CVs; NaN: there is none
+    std::optional<FaultOnset> since = {};
+    RecordSource source = RecordSource::nothing;  ///< the most probable one of a model that fails
+    std::optional<NamedMismatch> mismatch = {};   ///< of a source with a mismatch
+    Eigen::Index valve_mv = -1, sensor_cv = -1;   ///< of these sources
+    Eigen::Index late_cv = -1;                    ///< of data, or where it is corrected; -1: all CVs
+    double late = 0.0;                            ///< samples, below 0: early; 0: none is
+    bool late_is_corrected = false;               ///< the model was held against the record with it
+    std::optional<OfSources> probabilities = {};  ///< sum to 1, each inside of 0 and 1; none: not known
+
+    bool has_mismatch() const { return source == RecordSource::mismatch || source == RecordSource::both; }
+  };
+  struct Loop {
+    LoopAnswer answer = LoopAnswer::cannot_tell;
+    std::vector<CvCost> costs = {};  ///< the dearer ones first, and of those the largest ratio
+  };
+  struct Action {
+    ActionKind kind = ActionKind::wait;
+    std::optional<Channel> channel = {};  ///< of a repair, a test or one to leave alone
+    Eigen::Index cv = -1, mv = -1;        ///< what to look at
+    std::optional<PromisedGain> promise = {};
+    std::vector<Eigen::Index> worsened = {};  ///< why a channel is tested and not repaired
+  };
+
+  Model model;
+  Loop loop;
+  Action action;
+  bool has_trials = false;
+  bool controller_is_alike = true;
+
+  /// The CV that is named: the first one that the model does not explain, or else the dearest one; -1: none.
+  Eigen::Index named_cv() const;
+  /// Of a dearer loop: is that the CV that costs most?
+  bool names_dearest() const;
+  /// Of docs/own_records.md: "fault", "other_controller", "unexplained_cost", "nothing"; "none" where neither
+  /// question has an answer.
+  const char* found() const;
+};
+
+/// The verdict that the evidence leads to, and the only place where anything is decided:
+///
+/// - The model fails where the score of a CV is above the threshold, or its noise is another; it cannot tell
+///   where no CV has a score, or no gain that is wrong by half would show.
+/// - A CV is dearer where its ratio is above its threshold, and above 1.
+/// - P(nothing) is that of simulated records on the same side of the threshold, (healthy + 1) / (all + 2).
+/// The
+///   rest falls on the other sources by their posterior q, held back by c = (right + 1) / (same + 2):
+///
+///     P(s) = (1 - P(nothing)) (c q(s) + (1 - c) / 7)
+///
+/// - The action follows from both answers and the source.
+RecordVerdict record_verdict(const VerdictEvidence& evidence);
 
 }  // namespace mpm

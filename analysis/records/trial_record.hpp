@@ -15,6 +15,10 @@ namespace mpm {
 /// off by what moves a CV as far.
 inline constexpr double kTrialBias = 0.25;
 
+/// Errors of the model of simulated records, over those that a healthy model may have: a plant is a little
+/// worse than anyone says.
+inline constexpr double kWorseWorlds = 1.5;
+
 /// From what the simulated records are made.
 struct TrialFrame {
   PlantRecord record;     ///< that of the plant

@@ -31,6 +31,7 @@
 #include "bench/version.hpp"
 #include "results/assess/assessment_document.hpp"
 #include "results/assess/assessment_json.hpp"
+#include "results/assess/assessment_sentences.hpp"
 #include "results/document/document_html.hpp"
 #include "results/document/document_text.hpp"
 #include "results/records/plant_record_file.hpp"
@@ -51,6 +52,7 @@ struct AssessArguments {
   std::optional<int> window, stride;
   RunOptions run;
   bool json = false;
+  bool brief = false;
   bool quiet = false;
 };
 
@@ -151,7 +153,9 @@ ExitCode assess(AssessArguments options, const std::string& command) {
   assessment.version = mpmbench_version();
   if (!options.page.empty())
     write_text(options.page, document_html(assessment_document(assessment)));
-  print_result(options.json ? assessment_json(assessment) : document_text(assessment_document(assessment)));
+  print_result(options.json    ? assessment_json(assessment)
+               : options.brief ? brief_text(assessment)
+                               : document_text(assessment_document(assessment)));
   return ExitCode::done;
 }
 
@@ -185,6 +189,7 @@ void add_assess(CommandSet& commands) {
   add_jobs(app, options->run.jobs, "How many loops run at once");
   add_solver(app, options->run.solver);
   add_json(app, options->json);
+  app.add_flag("--brief", options->brief, "Print the verdict in ten lines or fewer, for a mail");
   add_quiet(app, options->quiet);
 }
 

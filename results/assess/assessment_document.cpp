@@ -27,13 +27,6 @@ Cell word(double flag) {
   return std::isnan(flag) ? Cell("-") : flag == 1.0 ? Cell("yes").toned(Cell::Tone::strong) : Cell("no");
 }
 
-std::string paragraph_of(const std::vector<std::string>& sentences) {
-  std::string words;
-  for (const std::string& sentence : sentences)
-    words += (words.empty() ? "" : " ") + as_label(sentence);
-  return words;
-}
-
 /// What stays behind its count until a reader opens it.
 Section warnings_section(const RecordAssessment& of) {
   Section section{"warnings", "Look at these"};
@@ -95,6 +88,8 @@ Figure worst_figure(const RecordAssessment& of) {
   for (Eigen::Index k = 0; k < of.record.samples(); ++k)
     time.push_back(kSteps * static_cast<double>(k) / last);
   PanelScript panel("worst", name, stamps_axis(of.record.stamps, kSteps), {.label = unit});
+  if (of.verdict.model.since)
+    panel.upright_band(kSteps * static_cast<double>(of.verdict.model.since->sample) / last, kSteps);
   panel.line(time, as_recorded(of, variable.name, of.record.y.row(cv)), measured);
   Eigen::RowVectorXd y_sim = of.loop.y_sim.row(cv);
   y_sim.head(of.unjudged).setConstant(kNaN);  // nobody knows what the MVs did before
@@ -102,8 +97,9 @@ Figure worst_figure(const RecordAssessment& of) {
   Figure figure;
   figure.name = "measured-and-model";
   figure.caption =
-      fmt::format("{}: measured, and what the model makes of the recorded MVs and disturbances{}",
-                  as_label(variable.name), of.model_error > 0.0 ? ", but for a constant" : "");
+      fmt::format("{}: measured, and what the model makes of the recorded MVs and disturbances{}{}",
+                  as_label(variable.name), of.model_error > 0.0 ? ", but for a constant" : "",
+                  of.verdict.model.since ? "; shaded since something is wrong" : "");
   figure.legend = {{"measured", measured}, {"model", model}};
   figure.panels.push_back(panel.finish(
       fmt::format("{} as measured and as the model has it, over time.", variable.name), kHeight));
@@ -111,37 +107,74 @@ Figure worst_figure(const RecordAssessment& of) {
   return figure;
 }
 
-Section verdict_section(const RecordAssessment& of) {
-  const AssessmentText text = verdict_text(of);
+/// "gain x 1.6", "dead time +2 min": of a channel that is wrong.
+Cell period_cell(const RecordAssessment& of, const ChannelPeriod& period) {
+  if (period.state == ChannelState::good)
+    return Cell("good").toned(Cell::Tone::good);
+  if (period.state == ChannelState::in_doubt)
+    return {"in doubt"};
+  const std::string size =
+      period.parameter == MismatchParameter::dead_time
+          ? fmt::format("dead time {:+.2g} {}", period.size, as_label(of.study.plant.time_unit))
+          : fmt::format("{} x {:.2g}", period.parameter == MismatchParameter::gain ? "gain" : "time constant",
+                        period.size);
+  return Cell("wrong, " + size).toned(Cell::Tone::bad);
+}
+
+Section verdict_section(const RecordAssessment& of, const AssessmentText& text) {
   Section section{"verdict", "The verdict"};
   Facts box;
-  box.add("Asked", paragraph_of(text.asked));
-  box.add("Found", paragraph_of(text.found));
-  box.add("To do", paragraph_of(text.to_do));
-  box.add("How sure", paragraph_of(text.sure));
+  box.add("Model", as_label(text.verdict.model));
+  box.add("Loop", as_label(text.verdict.loop));
+  box.add("Action", as_label(text.verdict.action));
   section.add(std::move(box));
   section.add(worst_figure(of));
   return section;
 }
 
-/// Where the method sees the fault stands beside the costs if a fault was found: what it says of a CV alone
-/// is not the verdict.
-Section cvs_section(const RecordAssessment& of) {
-  Section section{"cvs", "What it costs"};
-  const bool has_fault = of.found() == RecordVerdict::fault;
-  Table table(std::string("Variance of each CV over that of the nominal loop (1: as designed)") +
-                  (has_fault ? ", and where the method sees the fault" : ""),
-              {{"CV", Table::Align::left}, {"variance"}});
-  if (has_fault)
-    table.columns.insert(table.columns.end(), {{"flagged"}, {"source"}, {"score"}});
-  for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv) {
-    std::vector<Cell> cells = {as_label(cv_name(of.study, cv)),
-                               Number{number_of_cv(of.verdict(), "ivar", cv), NumberForm::fixed}};
-    if (has_fault)
-      cells.insert(cells.end(),
-                   {word(number_of_cv(of.verdict(), "cv_flagged", cv)),
-                    as_label(source_words(of.study, of.verdict(), source_of_cv(of.verdict(), cv))),
-                    Number{number_of_cv(of.verdict(), "cv_score", cv), NumberForm::fixed}});
+/// Scores, thresholds and probabilities behind the verdict.
+Section why_section(const AssessmentText& text) {
+  Section section{"why", "Why"};
+  const auto say_all = [&section](const std::string& heading, const std::vector<std::string>& lines) {
+    if (lines.empty())
+      return;
+    section.say(strong(heading));
+    Sentences words;
+    for (const std::string& line : lines)
+      words.words.push_back(as_label(line));
+    section.add(std::move(words));
+  };
+  say_all("Errors of the model", text.verdict.scores);
+  say_all("Cost of each CV over that of the loop as designed", text.verdict.costs);
+  if (!text.verdict.probabilities.empty())
+    section.say(as_label(text.verdict.probabilities));
+  std::vector<std::string> trust = text.trust;
+  trust.insert(trust.end(), text.further.begin(), text.further.end());
+  say_all("How far to trust it", trust);
+  return section;
+}
+
+/// A row a channel, a column a period.
+Section health_section(const RecordAssessment& of) {
+  Section section{"health", "The channels over time"};
+  if (of.health.empty())
+    return section;
+  Table table(
+      fmt::format("Each channel in periods of the record of its own: good, wrong with its size (score above "
+                  "{:.3g}), or in doubt, where an error of half its gain would not show",
+                  of.health_threshold()),
+      {{"channel", Table::Align::left}});
+  for (const Eigen::Index begin : of.periods)
+    table.columns.push_back(
+        {as_label("from " + of.record.stamps[static_cast<std::size_t>(begin)]), Table::Align::left});
+  for (const ChannelHistory& history : of.health) {
+    const Eigen::Index nu = of.study.mv_count();
+    const std::string input = history.input < nu
+                                  ? mv_name(of.study, history.input)
+                                  : of.study.plant.mds[static_cast<std::size_t>(history.input - nu)].name;
+    std::vector<Cell> cells{as_label(fmt::format("{}/{}", cv_name(of.study, history.cv), input))};
+    for (const ChannelPeriod& period : history.periods)
+      cells.push_back(period_cell(of, period));
     table.row(std::move(cells));
   }
   section.add(std::move(table));
@@ -209,29 +242,24 @@ Figure trend_figure(const RecordAssessment& of, const Eigen::RowVectorXd& scores
   return figure;
 }
 
-Section repair_section(const RecordAssessment& of) {
+Section repair_section(const RecordAssessment& of, const AssessmentText& text) {
   Section section{"repair", "What a repair would bring"};
+  Sentences words;
+  for (const std::string& sentence : text.repair)
+    words.words.push_back(as_label(sentence));
+  if (!words.words.empty())
+    section.add(std::move(words));
   if (!of.prospects.empty())
     section.add(prospects_table(of.study, of.prospects));
-  if (of.repair && of.repair->now.size() > 0 && of.repair->predicted.size() > 0) {
-    Table table(fmt::format("Variances of the CVs: with the model as it is, and with {} corrected",
-                            as_label(channel_name(of.study, of.repair->repair.channel))),
-                {{"CV", Table::Align::left}, {"now"}, {"after the repair"}, {"change, %"}});
-    for (Eigen::Index cv = 0; cv < of.study.cv_count(); ++cv) {
-      const double now = of.repair->now(cv), then = of.repair->predicted(cv);
-      table.row({as_label(cv_name(of.study, cv)), Number{now}, Number{then},
-                 fmt::format("{:+.0f}", 100.0 * (then / now - 1.0))});
-    }
-    section.add(std::move(table));
+  if (of.repair)
     section.add(step_figure(of));
-  }
   return section;
 }
 
 Section windows_section(const RecordAssessment& of) {
   Section section{"windows", "Over time"};
-  const Eigen::MatrixXd flags = of.verdict().values("window_flagged");
-  const Eigen::MatrixXd scores = of.verdict().values("window_score");
+  const Eigen::MatrixXd flags = of.said.front().values("window_flagged");
+  const Eigen::MatrixXd scores = of.said.front().values("window_score");
   Table table("The same method on a window that moves over the record",
               {{"window", Table::Align::left}, {"flagged"}, {"score"}});
   for (int window = 0; window < flags.cols(); ++window)
@@ -245,7 +273,7 @@ Section windows_section(const RecordAssessment& of) {
 
 /// What each method says, and how often it is right on simulated loops where there are some.
 Section trust_section(const RecordAssessment& of) {
-  Section section{"trust", "How far to trust it"};
+  Section section{"methods", "The methods"};
   Table table(
       of.trial ? fmt::format(
                      "What each method says of this record, and what it made of {} simulated loops of this "
@@ -263,7 +291,7 @@ Section trust_section(const RecordAssessment& of) {
   for (std::size_t m = 0; m < of.said.size(); ++m) {
     const AssessmentRecord& said = of.said[m];
     const std::string name = as_label(said.form->method().name);
-    const bool flagged = of.answers_of(m).has_fault();
+    const bool flagged = of.is_flagged(m);
     std::vector<Cell> cells{
         name, said.answered() ? word(flagged ? 1.0 : 0.0) : Cell(std::string(to_string(said.status))),
         Number{said.score}, flagged ? as_label(cv_name(of.study, said.predicted_cv)) : "-",
@@ -316,8 +344,10 @@ Document assessment_document(const RecordAssessment& of) {
       .footer = fmt::format("Made by {} from {}. Intervals have a confidence level of {:g} %.",
                             code("mpmbench assess"), file, 100.0 * of.study.aggregate.confidence),
       .version = of.version};
-  for (Section section : {verdict_section(of), warnings_section(of), cvs_section(of), repair_section(of),
-                          windows_section(of), trust_section(of), record_section(of)})
+  const AssessmentText text = assessment_text(of);
+  for (Section section :
+       {verdict_section(of, text), warnings_section(of), why_section(text), health_section(of),
+        repair_section(of, text), windows_section(of), trust_section(of), record_section(of)})
     if (!section.content.empty())
       document.sections.push_back(std::move(section));
   return document;

@@ -71,11 +71,10 @@ Json method_json(const RecordAssessment& of, std::size_t m) {
   Json json{{"name", said.form->method().name}, {"status", to_string(said.status)}, {"reason", said.reason}};
   if (!said.answered())
     return json;
-  json["flagged"] = of.answers_of(m).has_fault();
+  json["flagged"] = of.is_flagged(m);
   json["score"] = said.score;
-  json["cv"] = of.answers_of(m).has_fault() && said.predicted_cv >= 0
-                   ? Json(cv_name(of.study, said.predicted_cv))
-                   : Json();
+  json["cv"] =
+      of.is_flagged(m) && said.predicted_cv >= 0 ? Json(cv_name(of.study, said.predicted_cv)) : Json();
   json["source"] = to_string(named_source(said));
   const std::string valve = named_source(said) == FaultSource::other ? stuck_mv(of.study, said) : "";
   json["valve"] = valve.empty() ? Json() : Json(valve);
@@ -87,11 +86,73 @@ Json method_json(const RecordAssessment& of, std::size_t m) {
   return json;
 }
 
-/// Probabilities of the kinds of fault, given one; null without an answer.
-Json odds_json(const std::optional<FaultOdds>& odds) {
-  if (!odds)
+Json number_or_null(double value) {
+  return std::isnan(value) ? Json() : Json(value);
+}
+
+/// Of each source; null without simulated records.
+Json probabilities_json(const std::optional<OfSources>& probabilities) {
+  if (!probabilities)
     return {};
-  return {{"mpm", odds->mpm}, {"ud", odds->ud}, {"mpm_ud", odds->mpm_ud}, {"other", odds->other}};
+  Json json = Json::object();
+  for (const RecordSource source : enumerators<RecordSource>())
+    json[std::string(to_string(source))] = (*probabilities)[source];
+  return json;
+}
+
+Json loop_json(const RecordAssessment& of) {
+  Json cvs = Json::array();
+  for (const CvCost& cost : of.verdict.loop.costs)
+    cvs.push_back({{"cv", cv_name(of.study, cost.cv)},
+                   {"kind", cost.has_setpoint ? "setpoint" : "range"},
+                   {"cost", cost.now},
+                   {"designed", cost.designed},
+                   {"ratio", cost.ratio},
+                   {"threshold", number_or_null(cost.threshold)},
+                   {"dearer", cost.is_dearer()}});
+  return {{"answer", to_string(of.verdict.loop.answer)}, {"cvs", std::move(cvs)}};
+}
+
+Json action_json(const RecordAssessment& of) {
+  const RecordVerdict::Action& action = of.verdict.action;
+  const auto name = [&of](Eigen::Index place, bool is_cv) {
+    return place < 0 ? Json() : Json(is_cv ? cv_name(of.study, place) : mv_name(of.study, place));
+  };
+  Json worsened = Json::array();
+  for (const Eigen::Index cv : action.worsened)
+    worsened.push_back(cv_name(of.study, cv));
+  return {{"kind", to_string(action.kind)},
+          {"cv", name(action.channel ? action.channel->cv : action.cv, true)},
+          {"mv", name(action.channel ? action.channel->mv : action.mv, false)},
+          {"gain", action.promise ? Json{{"value", action.promise->gain},
+                                         {"lower", action.promise->lower},
+                                         {"upper", action.promise->upper}}
+                                  : Json()},
+          {"worsens", std::move(worsened)}};
+}
+
+Json health_json(const RecordAssessment& of) {
+  Json from = Json::array(), channels = Json::array();
+  for (const Eigen::Index begin : of.periods)
+    from.push_back(of.record.stamps[static_cast<std::size_t>(begin)]);
+  for (const ChannelHistory& history : of.health) {
+    const Eigen::Index nu = of.study.mv_count();
+    Json periods = Json::array();
+    for (const ChannelPeriod& period : history.periods)
+      periods.push_back({{"state", to_string(period.state)},
+                         {"score", period.score},
+                         {"parameter", to_string(period.parameter)},
+                         {"size", period.size}});
+    channels.push_back(
+        {{"cv", cv_name(of.study, history.cv)},
+         {"input", history.input < nu
+                       ? mv_name(of.study, history.input)
+                       : of.study.plant.mds[static_cast<std::size_t>(history.input - nu)].name},
+         {"periods", std::move(periods)}});
+  }
+  return {{"threshold", number_or_null(of.health_threshold())},
+          {"from", std::move(from)},
+          {"channels", std::move(channels)}};
 }
 
 Json promise_json(const RecordAssessment& of) {
@@ -117,13 +178,36 @@ Json of_mvs(const Study& study, const Eigen::VectorXd& numbers) {
 }
 
 Json model_json(const RecordAssessment& of) {
-  const bool is_known = of.model.answered();
-  Json unexplained = Json::array();
-  for (const UnexplainedCv& each : of.unexplained)
-    unexplained.push_back({{"cv", cv_name(of.study, each.cv)}, {"noise", each.noise}});
-  return {{"error", of.model_error},
-          {"score", is_known ? Json(of.model.score) : Json()},
-          {"flagged", is_known ? Json(is_above(of.model, of.trial ? &of.trial->model : nullptr)) : Json()},
+  const RecordVerdict::Model& model = of.verdict.model;
+  Json at = Json::array(), unexplained = Json::array();
+  for (const UnexplainedPart& part : model.at) {
+    at.push_back({{"cv", cv_name(of.study, part.cv)},
+                  {"score", part.score},
+                  {"threshold", part.threshold},
+                  {"of", part.is_noise ? "noise" : "errors"}});
+    if (part.is_noise)
+      unexplained.push_back({{"cv", cv_name(of.study, part.cv)}, {"noise", part.score}});
+  }
+  const auto stamp = [&of](Eigen::Index sample) {
+    return of.record.stamps[static_cast<std::size_t>(sample)];
+  };
+  return {{"answer", to_string(model.answer)},
+          {"at", std::move(at)},
+          {"since", model.since ? Json{{"from", stamp(model.since->sample)},
+                                       {"earliest", stamp(model.since->earliest)},
+                                       {"latest", stamp(model.since->latest)}}
+                                : Json()},
+          {"source", to_string(model.source)},
+          {"mismatch", model.mismatch ? named_json(of.study, *model.mismatch) : Json()},
+          {"valve", model.valve_mv < 0 ? Json() : Json(mv_name(of.study, model.valve_mv))},
+          {"late", model.late == 0.0
+                       ? Json()
+                       : Json{{"cv", model.late_cv < 0 ? Json() : Json(cv_name(of.study, model.late_cv))},
+                              {"samples", model.late},
+                              {"corrected", model.late_is_corrected}}},
+          {"error", of.model_error},
+          {"score", number_or_null(model.score)},
+          {"threshold", number_or_null(model.threshold)},
           {"unexplained", std::move(unexplained)},
           {"trust", of.trial ? trust_json(of.trial->model) : Json()}};
 }
@@ -144,13 +228,16 @@ std::string assessment_json(const RecordAssessment& assessment) {
             {"to", assessment.record.stamps.back()},
             {"samples", assessment.record.samples()},
             {"unjudged", assessment.unjudged},
-            {"found", to_string(assessment.found())},
+            {"found", assessment.verdict.found()},
             {"verdict", verdict_sentences(assessment)},
+            {"model", model_json(assessment)},
+            {"loop", loop_json(assessment)},
+            {"action", action_json(assessment)},
+            {"probabilities", probabilities_json(assessment.verdict.model.probabilities)},
+            {"health", health_json(assessment)},
             {"methods", Json::array()}};
   for (std::size_t m = 0; m < assessment.said.size(); ++m)
     json["methods"].push_back(method_json(assessment, m));
-  json["probabilities"] = odds_json(assessment.fault_odds());
-  json["model"] = model_json(assessment);
   json["controller"] = controller_json(assessment);
   json["repair"] = assessment.repair ? promise_json(assessment) : Json();
   json["candidates"] = prospects_json(assessment.study, assessment.prospects);

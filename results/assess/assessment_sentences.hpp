@@ -8,23 +8,26 @@
 
 #include "analysis/methods/assessment_record.hpp"
 #include "analysis/records/record_assessment.hpp"
+#include "results/assess/record_verdict_text.hpp"
 #include "scenarios/study/study.hpp"
 
 // What is said of a record of a plant, sentence by sentence.
 
 namespace mpm {
 
-/// The verdict in sentences.
+/// The verdict in sentences, and what stands beside it.
 struct AssessmentText {
-  std::vector<std::string> asked;
-  std::vector<std::string> found;  ///< what it costs and where, what it is, which channel and parameter
-  std::vector<std::string> to_do;
-  std::vector<std::string> sure;  ///< how far to trust it
+  RecordVerdictText verdict;
+  std::vector<std::string> further = {};  ///< of controller and candidates
+  std::vector<std::string> trust = {};    ///< how far to trust it
+  std::vector<std::string> repair = {};   ///< what the record tells of the channel, and of others
 };
 
-AssessmentText verdict_text(const RecordAssessment& assessment);
-/// All of them but what was asked, in their order.
+AssessmentText assessment_text(const RecordAssessment& assessment);
+/// All of them, in their order.
 std::vector<std::string> verdict_sentences(const RecordAssessment& assessment);
+/// The verdict for a mail: at most ten lines.
+std::string brief_text(const RecordAssessment& assessment);
 /// Is the controller of the study the one that ran? Empty: it is.
 std::vector<std::string> controller_sentences(const RecordAssessment& assessment);
 /// The MV whose valve sticks, if one does, by an answer that was asked for it; otherwise empty.
@@ -44,8 +47,6 @@ std::vector<std::string> named_mvs(const Study& study, const AssessmentRecord& s
 /// The logged signal that the method names for a CV that it flags; empty for none.
 std::string named_candidate(const RecordAssessment& assessment, const AssessmentRecord& said,
                             Eigen::Index cv);
-/// "gain of y2/u1 x 0.62 (0.55 to 0.7)"
-std::string mismatch_sentence(const Study& study, const NamedMismatch& named);
 /// First and last stamp of a window of the study.
 std::string window_text(const RecordAssessment& assessment, int window);
 

@@ -236,10 +236,11 @@ std::string estimate_text(double value, double lower, double upper, SizeBound bo
   const auto number = [](double of) {
     return fmt::format("{:.3g}", std::abs(of) < kPrintedAsZero ? 0.0 : of);
   };
-  const std::string interval =
-      std::isnan(lower) ? "" : fmt::format(" ({} to {})", number(lower), number(upper));
-  return fmt::format("{}{}{}", bound == SizeBound::none ? "" : fmt::format("{} ", to_string(bound)),
-                     number(value), interval);
+  if (bound != SizeBound::none) {
+    const double end = bound == SizeBound::at_least ? lower : upper;
+    return fmt::format("{} {}", to_string(bound), number(std::isnan(end) ? value : end));
+  }
+  return number(value) + (std::isnan(lower) ? "" : fmt::format(" ({} to {})", number(lower), number(upper)));
 }
 
 std::string dead_time_text(double shift, double lower, double upper, SizeBound bound,

@@ -41,8 +41,9 @@ std::string fault_text(const Study& study, const ExperimentDraw& draw);
 /// "experiment 12 (MPM): gain of y1/u2 x 0.45"; a named scenario has its name in place of the number.
 std::string experiment_title(const Study& study, const ExperimentDraw& draw);
 
-/// "0.62 (0.55 to 0.7)", without the brackets where the ends are not known; "at least 8 (7.1 to 8)" of an
-/// estimate at the end of its search. What differs from 0 by rounding is 0.
+/// "0.62 (0.55 to 0.7)", without the brackets where the ends are not known; "at least 7.1" of an
+/// estimate of 8 at the end of its search, where its interval (7.1 to 8) is open. What differs from 0 by
+/// rounding is 0.
 std::string estimate_text(double value, double lower, double upper, SizeBound bound);
 
 /// "longer by 1.5 (1.2 to 1.8) min", "shorter by at least 3 (2 to 3) min": a dead time.

@@ -1,0 +1,359 @@
+#include "analysis/records/record_alternatives.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include "analysis/methods/ours/mismatch_responses.hpp"
+#include "analysis/records/channel_error_fit.hpp"
+#include "base/non_finite.hpp"
+#include "plants/linear/zero_order_hold.hpp"
+#include "scenarios/faults/fault.hpp"
+#include "scenarios/faults/other_fault.hpp"
+
+namespace mpm {
+namespace {
+
+using Columns = Eigen::MatrixXd;
+
+/// One CV: its errors, and how likely they are under a hypothesis.
+class CvErrors {
+ public:
+  CvErrors(const AssessedLoop& loop, const ChannelErrorFit& fit, Eigen::Index cv)
+      : samples_(fit.samples), X_(fit.X) {
+    if (!loop.untold.empty()) {
+      const Columns untold = loop.untold[static_cast<std::size_t>(cv)](Eigen::all, samples_).transpose();
+      const Eigen::HouseholderQR<Columns> qr(untold);
+      Q_ = qr.householderQ() * Columns::Identity(untold.rows(), untold.cols());
+    }
+    e_ = told(fit.e);
+    none_ = log_likelihood(e_, Columns(e_.size(), 0));
+  }
+
+  double none() const { return none_; }
+  double log_samples() const { return std::log(static_cast<double>(e_.size())); }
+
+  /// With h (N of the loop) taken off.
+  double without(const Eigen::RowVectorXd& h) const { return without(h, Columns(h.size(), 0)); }
+  /// The same with these columns (N of the loop, each of any size) in it.
+  double without(const Eigen::RowVectorXd& h, const Columns& free) const {
+    return log_likelihood(e_ - told(h(samples_).transpose()), told_columns(free));
+  }
+  double with(const Columns& free) const { return log_likelihood(e_, told_columns(free)); }
+
+ private:
+  static constexpr Eigen::Index kOrder = 3;
+  static constexpr int kPasses = 3;
+
+  Eigen::VectorXd told(const Eigen::VectorXd& signal) const {
+    return Q_.size() == 0 ? signal : Eigen::VectorXd(signal - Q_ * (Q_.transpose() * signal));
+  }
+
+  Columns told_columns(const Columns& free) const {
+    Columns H(e_.size(), free.cols());
+    for (Eigen::Index column = 0; column < free.cols(); ++column)
+      H.col(column) = told(free.col(column)(samples_));
+    return H;
+  }
+
+  /// The signals after an autoregression.
+  static Columns whitened_by(const Eigen::VectorXd& a, const Columns& signals) {
+    const Eigen::Index p = a.size(), n = signals.rows() - p;
+    Columns white = signals.bottomRows(n);
+    for (Eigen::Index lag = 0; lag < p; ++lag)
+      white -= a(lag) * signals.middleRows(p - 1 - lag, n);
+    return white;
+  }
+
+  static Eigen::VectorXd autoregression_of(const Eigen::VectorXd& r) {
+    const Eigen::Index n = r.size() - kOrder;
+    Columns past(n, kOrder);
+    for (Eigen::Index lag = 0; lag < kOrder; ++lag)
+      past.col(lag) = r.segment(kOrder - 1 - lag, n);
+    Columns A = past.transpose() * past;
+    A.diagonal().array() += 1e-12 * A.trace() + 1e-300;
+    return A.ldlt().solve(past.transpose() * r.tail(n));
+  }
+
+  double log_likelihood(const Eigen::VectorXd& e, const Columns& free) const {
+    const auto n = static_cast<double>(e.size());
+    Columns Z(e.size(), X_.cols() + free.cols());
+    Z << X_, free;
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(kOrder);
+    Eigen::VectorXd of_errors;
+    double variance = std::max(1e-300, e.squaredNorm() / n), squares = 0.0;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const Columns white = whitened_by(a, Z);
+      const Eigen::VectorXd white_e = whitened_by(a, e);
+      Columns A = white.transpose() * white / variance;
+      A.diagonal().head(X_.cols()).array() += 1.0;
+      A.diagonal().array() += 1e-12;
+      of_errors = A.ldlt().solve(white.transpose() * white_e / variance);
+      squares = (white_e - white * of_errors).squaredNorm();
+      variance = std::max(1e-300, squares / static_cast<double>(white_e.size()));
+      if (pass + 1 < kPasses)
+        a = autoregression_of(e - Z * of_errors);
+    }
+    return -0.5 * n * std::log(variance) - 0.5 * of_errors.head(X_.cols()).squaredNorm();
+  }
+
+  std::vector<Eigen::Index> samples_;
+  Columns X_, Q_;
+  Eigen::VectorXd e_;
+  double none_ = 0.0;
+};
+
+/// A valve that stays until the signal is more than d away, and then goes where it is.
+Eigen::RowVectorXd staying_valve(const Eigen::RowVectorXd& u, double d, double start) {
+  Eigen::RowVectorXd x(u.size());
+  double position = start;
+  for (Eigen::Index k = 0; k < u.size(); ++k) {
+    if (std::abs(u(k) - position) > d)
+      position = u(k);
+    x(k) = position;
+  }
+  return x;
+}
+
+Eigen::RowVectorXd sticky_valve(const Eigen::RowVectorXd& u, double stickband, double jump) {
+  StickyValve stem(stickband, jump * stickband, u(0));
+  Eigen::RowVectorXd x(u.size());
+  for (Eigen::Index k = 0; k < u.size(); ++k)
+    x(k) = stem.follow(u(k));
+  return x;
+}
+
+/// The hypotheses about one record.
+class Comparison {
+ public:
+  Comparison(const Study& study, const AssessedLoop& loop, double delta,
+             const std::optional<FaultOnset>& onset)
+      : study_(study), loop_(loop), onset_(onset ? onset->sample : 0) {
+    const ChannelErrorFits fits(study, delta);
+    for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
+      const ChannelErrorFit fit = fits.of(loop, cv);
+      cvs_.emplace_back(loop, fit, cv);
+      none_ += cvs_.back().none();
+    }
+  }
+
+  RecordAlternatives all() const {
+    RecordAlternatives found{.disturbance = none_};
+    found.mismatch = mismatch();
+    data(found);
+    sensor(found);
+    valve(found);
+    return found;
+  }
+
+  double common_lateness() const {
+    constexpr double kSure = 6.0;
+    double best = 0.0, most = -kInfinity, samples = 0.0;
+    const auto with_free_gains = [&](double late) {
+      double sum = 0.0;
+      for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
+        const Eigen::RowVectorXd y_sim = loop_.y_sim.row(cv);
+        const Columns gains = responses(cv, late);
+        sum += of(cv).without(late_by(y_sim, late) - y_sim, gains) -
+               0.5 * static_cast<double>(gains.cols()) * of(cv).log_samples();
+        samples = std::max(samples, of(cv).log_samples());
+      }
+      return sum;
+    };
+    for (const double late : {-2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0})
+      if (const double here = with_free_gains(late); here > most) {
+        most = here;
+        best = late;
+      }
+    const double found = most - 0.5 * samples;
+    return found > with_free_gains(0.0) + kSure && found > mismatch() ? best : 0.0;
+  }
+
+ private:
+  /// N x channels of a CV, late.
+  Columns responses(Eigen::Index cv, double late) const {
+    std::vector<Eigen::RowVectorXd> all;
+    for (Eigen::Index place = 0; place < study_.mv_count() + study_.md_count(); ++place)
+      if (const TransferFunction channel = study_.assessed_channel(cv, place); !channel.is_zero())
+        all.push_back(late_by(response(channel, input(place)), late));
+    Columns columns(loop_.samples(), static_cast<Eigen::Index>(all.size()));
+    for (std::size_t place = 0; place < all.size(); ++place)
+      columns.col(static_cast<Eigen::Index>(place)) = all[place].transpose();
+    return columns;
+  }
+
+  const CvErrors& of(Eigen::Index cv) const { return cvs_[static_cast<std::size_t>(cv)]; }
+  /// N of the loop: the response of a channel to one input, from the onset on.
+  Eigen::RowVectorXd response(const TransferFunction& channel, const Eigen::RowVectorXd& x) const {
+    return channel_response(discretise(channel, study_.controller.sample_time), x, x(0));
+  }
+  Eigen::RowVectorXd input(Eigen::Index place) const {
+    return place < study_.mv_count() ? loop_.u.row(place) : loop_.d.row(place - study_.mv_count());
+  }
+
+  /// The best single parameter of a channel of each CV.
+  double mismatch() const {
+    double sum = 0.0;
+    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
+      double best = of(cv).none();
+      for (Eigen::Index place = 0; place < study_.mv_count() + study_.md_count(); ++place)
+        best = std::max(best, of_channel(cv, place));
+      sum += best;
+    }
+    return sum;
+  }
+
+  double of_channel(Eigen::Index cv, Eigen::Index place) const {
+    constexpr double kTimes[] = {0.35, 0.5, 0.7, 1.4, 2.0, 2.8};
+    constexpr double kShifts[] = {-3.0, -2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0};
+    const TransferFunction channel = study_.assessed_channel(cv, place);
+    if (channel.is_zero())
+      return -kInfinity;
+    const double parameters = onset_ > 0 ? 3.0 : 2.0;
+    const double penalty = 0.5 * parameters * of(cv).log_samples();
+    const Eigen::RowVectorXd u = input(place), nominal = response(channel, u);
+    const auto masked = [this](Eigen::RowVectorXd h) {
+      h.head(onset_).setZero();
+      return h;
+    };
+    double best = of(cv).with(masked(nominal).transpose());
+    const auto take = [&](MismatchParameter parameter, double size) {
+      const TransferFunction other =
+          with_mismatches(TransferMatrix{{channel}}, {{0, 0, parameter, size}})(0, 0);
+      best = std::max(best, of(cv).without(masked(response(other, u) - nominal)));
+    };
+    for (const double factor : kTimes)
+      take(MismatchParameter::time_constant, factor);
+    for (const double shift : kShifts)
+      if (const double time = shift * study_.controller.sample_time; channel.dead_time() + time >= 0.0)
+        take(MismatchParameter::dead_time, time);
+    return best - penalty;
+  }
+
+  void data(RecordAlternatives& found) const {
+    constexpr double kLate[] = {-2.0, -1.5, -1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0};
+    found.data = -kInfinity;
+    const auto take = [&found](double likelihood, double late, Eigen::Index cv) {
+      if (likelihood > found.data) {
+        found.data = likelihood;
+        found.late = late;
+        found.data_cv = cv;
+      }
+    };
+    for (const double late : kLate) {
+      double sum = 0.0, samples = 0.0;
+      for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
+        const Eigen::RowVectorXd y_sim = loop_.y_sim.row(cv);
+        const double here = of(cv).without(late_by(y_sim, late) - y_sim);
+        sum += here;
+        samples = std::max(samples, of(cv).log_samples());
+        if (loop_.y.rows() > 1)
+          take(none_ - of(cv).none() + here - of(cv).log_samples(), late, cv);
+      }
+      take(sum - 0.5 * samples, late, -1);
+    }
+  }
+
+  void sensor(RecordAlternatives& found) const {
+    constexpr Eigen::Index kStarts = 12;
+    found.sensor = -kInfinity;
+    const Eigen::Index N = loop_.samples();
+    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv)
+      for (Eigen::Index start = 0; start < kStarts; ++start) {
+        Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(N, 0.0, 1.0);
+        ramp = (ramp.array() - static_cast<double>(start) / kStarts).max(0.0);
+        const double here = none_ - of(cv).none() + of(cv).with(ramp) - of(cv).log_samples();
+        if (here > found.sensor) {
+          found.sensor = here;
+          found.sensor_cv = cv;
+        }
+      }
+  }
+
+  /// L of a valve of this MV whose position is x.
+  double of_valve(Eigen::Index mv, const Eigen::RowVectorXd& x) const {
+    const Eigen::RowVectorXd off = x - loop_.u.row(mv);
+    double sum = 0.0, samples = 0.0;
+    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
+      const TransferFunction channel = study_.assessed_channel(cv, mv);
+      sum += channel.is_zero() ? of(cv).none()
+                               : of(cv).without(channel_response(
+                                     discretise(channel, study_.controller.sample_time), off, 0.0));
+      samples = std::max(samples, of(cv).log_samples());
+    }
+    return sum - samples;
+  }
+
+  void valve(RecordAlternatives& found) const {
+    constexpr double kBands[] = {0.02, 0.04, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4};
+    constexpr double kCloser[] = {0.84, 0.92, 1.08, 1.18};
+    constexpr double kJumps[] = {0.0, 0.3, 0.6, 1.0};
+    found.valve = -kInfinity;
+    for (Eigen::Index mv = 0; mv < study_.mv_count(); ++mv) {
+      const Eigen::RowVectorXd u = loop_.u.row(mv);
+      const double range = u.maxCoeff() - u.minCoeff();
+      if (!(range > 0.0))
+        continue;
+      using Valve = std::function<Eigen::RowVectorXd(double)>;
+      std::vector<Valve> valves{[&u](double band) { return staying_valve(u, band, u(0)); }};
+      for (const double jump : kJumps)
+        valves.emplace_back([&u, jump](double band) { return sticky_valve(u, band, jump); });
+      for (const Valve& valve : valves) {
+        double best = -kInfinity, band = 0.0;
+        const auto take = [&](double size) {
+          if (const double here = of_valve(mv, valve(size)); here > best) {
+            best = here;
+            band = size;
+          }
+        };
+        for (const double share : kBands)
+          take(share * range);
+        for (int pass = 0; pass < 2; ++pass) {
+          const double centre = band;
+          for (const double closer : kCloser)
+            take(centre * (pass == 0 ? closer : 1.0 + 0.3 * (closer - 1.0)));
+        }
+        if (best > found.valve) {
+          found.valve = best;
+          found.valve_mv = mv;
+        }
+      }
+    }
+  }
+
+  const Study& study_;
+  const AssessedLoop& loop_;
+  Eigen::Index onset_;
+  std::vector<CvErrors> cvs_;
+  double none_ = 0.0;
+};
+
+}  // namespace
+
+Eigen::RowVectorXd late_by(const Eigen::RowVectorXd& y, double s) {
+  Eigen::RowVectorXd late(y.size());
+  const auto last = static_cast<double>(y.size() - 1);
+  for (Eigen::Index k = 0; k < y.size(); ++k) {
+    const double at = std::clamp(static_cast<double>(k) - s, 0.0, last);
+    const auto before = static_cast<Eigen::Index>(std::min(at, last - 1.0));
+    const double part = at - static_cast<double>(before);
+    late(k) = (1.0 - part) * y(before) + part * y(before + 1);
+  }
+  return late;
+}
+
+RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& loop, double delta,
+                                       const std::optional<FaultOnset>& onset) {
+  return Comparison(study, loop, delta, onset).all();
+}
+
+double common_lateness(const Study& study, const AssessedLoop& loop, double delta) {
+  return Comparison(study, loop, delta, {}).common_lateness();
+}
+
+}  // namespace mpm

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/records/record_verdict.hpp"
+#include "scenarios/study/study.hpp"
+
+namespace mpm {
+
+/// How well each sort of fault explains the simulation errors of a record, on one scale. With e_i = y - y_sim
+/// of CV i without what no record can tell (AssessedLoop::untold), X_i the responses to errors of a healthy
+/// model (ChannelErrorFit) and n an autoregression of order 3,
+///
+///   e_i = h_i + X_i a_i + n_i,   a_i ~ N(0, I),   L = sum_i (-N/2 log s_i^2 - |a_i|^2 / 2) - k/2 log N
+///
+/// s_i^2 the mean square of the innovations, k the parameters of the hypothesis (Schwarz 1978). The slow part
+/// of n is a disturbance, which may be there in each of them:
+///
+/// | hypothesis  | h                                                                                        |
+/// |-------------|------------------------------------------------------------------------------------------|
+/// | disturbance | none                                                                                     |
+/// | mismatch    | of one channel of each CV: another gain, time constant or dead time, from the onset on   |
+/// | data        | y is s samples late against the inputs, in one CV or in all: y_sim(k) - y_sim(k - s)     |
+/// | sensor      | a ramp in y of one CV from some sample on                                                |
+/// | valve       | of one MV: the responses to x - u, x of StickyValve, or of a valve that stays until      |
+/// |             | abs(u - x) > d and then goes to u (Stenman, Gustafsson and Forsman 2003)                 |
+struct RecordAlternatives {
+  double disturbance = 0.0, mismatch = 0.0, data = 0.0, sensor = 0.0, valve = 0.0;  ///< L
+  Eigen::Index data_cv = -1;                                                        ///< -1: all CVs
+  double late = 0.0;                                                                ///< s
+  Eigen::Index sensor_cv = -1, valve_mv = -1;
+};
+
+/// `delta`: the errors of the model, 0: none. Throws InputError as ChannelErrorFits.
+RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& loop, double delta,
+                                       const std::optional<FaultOnset>& onset);
+
+/// y at s samples before, a straight line between samples; the first and the last value beyond the ends.
+Eigen::RowVectorXd late_by(const Eigen::RowVectorXd& y, double s);
+
+/// By how many samples all CVs are late against the inputs (below 0: early), in halves of a sample; 0: not at
+/// all, as far as anyone can tell. With s all of them are explained better than without, by 6 in L, where
+/// the gain of each channel is free in both, and not worse than by a mismatch in one channel of each CV.
+double common_lateness(const Study& study, const AssessedLoop& loop, double delta);
+
+}  // namespace mpm

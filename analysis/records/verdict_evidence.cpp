@@ -1,0 +1,151 @@
+#include "analysis/records/verdict_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "analysis/findings/trial_findings.hpp"
+#include "base/non_finite.hpp"
+#include "scenarios/faults/fault.hpp"
+
+namespace mpm {
+namespace {
+
+bool has_verdict(const ExperimentRecord& record, std::size_t method) {
+  return record.status == ExperimentStatus::ok && record.assessments[method].answered();
+}
+
+bool is_without_fault(const ExperimentRecord& record) {
+  return record.draw.kind == ExperimentKind::healthy;
+}
+
+RecordSource record_source(FaultSource source) {
+  switch (source) {
+    case FaultSource::mpm:
+      return RecordSource::mismatch;
+    case FaultSource::ud:
+      return RecordSource::disturbance;
+    case FaultSource::mpm_ud:
+      return RecordSource::both;
+    case FaultSource::other:
+      return RecordSource::valve;
+    case FaultSource::none:
+      break;
+  }
+  return RecordSource::unknown;
+}
+
+/// The most probable source of a CV; none without an answer.
+FaultSource source_in(const AssessmentRecord& likelihood, Eigen::Index cv) {
+  FaultSource best = FaultSource::none;
+  double most = 0.0;
+  if (cv >= 0)
+    for (const auto& [name, source] :
+         {std::pair{"cv_p_mpm", FaultSource::mpm}, std::pair{"cv_p_ud", FaultSource::ud},
+          std::pair{"cv_p_both", FaultSource::mpm_ud}, std::pair{"cv_p_other", FaultSource::other}})
+      if (const double share = likelihood.number(name, cv); share > most) {
+        most = share;
+        best = source;
+      }
+  return best;
+}
+
+}  // namespace
+
+Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method, const std::string& number,
+                                  Eigen::Index rows) {
+  std::vector<std::vector<double>> scores(static_cast<std::size_t>(rows));
+  records.each([&](const ExperimentRecord& record) {
+    if (!has_verdict(record, method) || !is_without_fault(record))
+      return;
+    for (Eigen::Index row = 0; row < rows; ++row)
+      if (const double score = record.assessments[method].number(number, row); !std::isnan(score))
+        scores[static_cast<std::size_t>(row)].push_back(score);
+  });
+  Eigen::VectorXd thresholds(rows);
+  for (Eigen::Index row = 0; row < rows; ++row)
+    thresholds(row) =
+        trial_threshold(scores[static_cast<std::size_t>(row)], kTrialFalseAlarms / static_cast<double>(rows));
+  return thresholds;
+}
+
+TrialCounts trial_counts(const RecordRange& records, std::size_t method, double threshold,
+                         std::size_t source_method, RecordSource named) {
+  TrialCounts counts;
+  records.each([&](const ExperimentRecord& record) {
+    if (!has_verdict(record, method))
+      return;
+    const bool is_above = record.assessments[method].score > threshold;
+    const std::int64_t healthy = is_without_fault(record) ? 1 : 0;
+    ++(is_above ? counts.above : counts.below);
+    (is_above ? counts.healthy_above : counts.healthy_below) += healthy;
+    if (!is_above || !has_verdict(record, source_method))
+      return;
+    const FaultSource said = record.assessments[source_method].predicted_source;
+    if (said == FaultSource::none || record_source(said) != named)
+      return;
+    ++counts.same;
+    counts.right += record_source(source_of(record.draw.kind)) == named ? 1 : 0;
+  });
+  return counts;
+}
+
+OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRecord& said) {
+  OfSources weights;
+  if (likelihood.answered()) {
+    const auto of = [&likelihood](const char* name) { return std::max(0.0, likelihood.number(name)); };
+    weights[RecordSource::mismatch] = of("p_mpm");
+    weights[RecordSource::disturbance] = of("p_ud");
+    weights[RecordSource::both] = of("p_both");
+    weights[RecordSource::valve] = of("p_other");
+  }
+  if (!said.answered() || !said.flagged)
+    return weights;
+  if (said.predicted_source == FaultSource::none) {
+    double& mismatch = weights[RecordSource::mismatch];
+    double& disturbance = weights[RecordSource::disturbance];
+    if (said.form->method().tells_sources)
+      mismatch = disturbance = 0.5 * (mismatch + disturbance);
+    return weights;
+  }
+  const RecordSource named =
+      said.predicted_source == FaultSource::other && std::isnan(said.number("valve_mv"))
+          ? RecordSource::unknown
+          : record_source(said.predicted_source);
+  if (record_source(source_in(likelihood, said.predicted_cv)) == named)
+    return weights;
+  const auto best = std::max_element(weights.each.begin(), weights.each.end());
+  if (*best > 0.0)
+    std::swap(weights[named], *best);
+  else
+    weights[named] = 1.0;
+  return weights;
+}
+
+OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives) {
+  constexpr double kPrior = 0.1;
+  const double usual = std::max(alternatives.mismatch, alternatives.disturbance);
+  OfSources all;
+  const double most = std::max({usual, alternatives.valve, alternatives.sensor, alternatives.data});
+  const auto share = [most](double likelihood) { return std::exp(likelihood - most); };
+  all[RecordSource::valve] = kPrior * share(alternatives.valve);
+  all[RecordSource::sensor] = kPrior * share(alternatives.sensor);
+  all[RecordSource::data] = kPrior * share(alternatives.data);
+  OfSources told = weights;
+  double sum = 0.0;
+  constexpr RecordSource kUsual[] = {RecordSource::mismatch, RecordSource::disturbance, RecordSource::both,
+                                     RecordSource::unknown};
+  for (const RecordSource source : kUsual)
+    sum += told[source];
+  if (!(sum > 0.0)) {
+    sum = 1.0;
+    told[alternatives.mismatch > alternatives.disturbance ? RecordSource::mismatch
+                                                          : RecordSource::disturbance] = 1.0;
+  }
+  for (const RecordSource source : kUsual)
+    all[source] = share(usual) * told[source] / sum;
+  return all;
+}
+
+}  // namespace mpm

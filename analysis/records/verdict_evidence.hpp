@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "analysis/experiment/record_range.hpp"
+#include "analysis/methods/assessment_record.hpp"
+#include "analysis/records/record_alternatives.hpp"
+#include "analysis/records/record_verdict.hpp"
+
+// What a verdict rests on, from the answers of methods on the record and on simulated ones.
+
+namespace mpm {
+
+/// The threshold of a number of model_check_method(), in the place `method` of the answers, for each of its
+/// rows, above which at most kTrialFalseAlarms of the simulated records without a fault are in some row: its
+/// conformal threshold at this share over the rows, or the largest. NaN without such records.
+Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method, const std::string& number,
+                                  Eigen::Index rows);
+
+/// Simulated records by the side of `threshold` on which their answer in the place `method` is, and how often
+/// the answer in the place `source_method` has the right source where it says what is `named`.
+TrialCounts trial_counts(const RecordRange& records, std::size_t method, double threshold,
+                         std::size_t source_method, RecordSource named);
+
+/// The posterior of `likelihood` on the record. Where the method of the verdict flags the record and sees
+/// another source in its worst CV than the most probable one there, this and the most probable one of the
+/// record change places: it has asked more. Where it leaves open whether it is a mismatch or a disturbance,
+/// both are as probable.
+OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRecord& said);
+
+/// The weights where further hypotheses count: valve, sensor and data by their likelihood against the better
+/// one of mismatch and disturbance, a tenth as probable before; mismatch, disturbance and both share the rest
+/// as they did.
+OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives);
+
+}  // namespace mpm

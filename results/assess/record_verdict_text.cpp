@@ -1,0 +1,413 @@
+#include "results/assess/record_verdict_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "results/assess/repair_form.hpp"
+#include "results/text/experiment_text.hpp"
+
+namespace mpm {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+/// "A", "A and B", "A, B and C"
+std::string joined(const Lines& names) {
+  if (names.size() < 2)
+    return names.empty() ? "" : names.front();
+  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
+}
+
+/// A probability in whole percent; none is 0 or 100 %.
+std::string whole_percent_text(int permille) {
+  return permille > 990  ? "more than 99 %"
+         : permille < 10 ? "less than 1 %"
+                         : fmt::format("{:.0f} %", permille / 10.0);
+}
+
+/// "12 % (5 to 20 %)"
+std::string promise_text(const PromisedGain& promise) {
+  const auto percent = [](double share) { return std::lround(100.0 * share); };
+  return fmt::format("{} % ({} to {} %)", percent(promise.gain), percent(promise.lower),
+                     percent(promise.upper));
+}
+
+/// Writes one verdict.
+class VerdictWriter {
+ public:
+  VerdictWriter(const RecordVerdict& verdict, const Study& study, const Lines& stamps)
+      : verdict_(verdict), study_(study), stamps_(stamps) {}
+
+  RecordVerdictText text() const {
+    return {.model = model(),
+            .loop = loop(),
+            .action = action(),
+            .scores = scores(),
+            .costs = costs(),
+            .probabilities = probabilities()};
+  }
+
+ private:
+  std::string cv(Eigen::Index place) const { return cv_name(study_, place); }
+  std::string mv(Eigen::Index place) const { return place < 0 ? "an MV" : mv_name(study_, place); }
+  std::string stamp(Eigen::Index sample) const { return stamps_[static_cast<std::size_t>(sample)]; }
+
+  std::string since() const {
+    const std::optional<FaultOnset>& onset = verdict_.model.since;
+    return onset ? fmt::format(" since {} ({} to {})", stamp(onset->sample), stamp(onset->earliest),
+                               stamp(onset->latest))
+                 : "";
+  }
+
+  Lines names_of(const std::vector<UnexplainedPart>& parts, bool noisy) const {
+    Lines names;
+    for (const UnexplainedPart& part : parts)
+      if (part.is_noise == noisy)
+        names.push_back(cv(part.cv));
+    return names;
+  }
+
+  /// What the source is, of a model that fails.
+  std::string what() const {
+    const RecordVerdict::Model& model = verdict_.model;
+    const std::string at = cv(model.at.front().cv);
+    const std::string mismatch = model.mismatch ? mismatch_sentence(study_, *model.mismatch)
+                                                : fmt::format("a channel of {} is not that of the model", at);
+    switch (model.source) {
+      case RecordSource::mismatch:
+        return mismatch;
+      case RecordSource::both:
+        return mismatch + ", and an unmeasured disturbance is there as well";
+      case RecordSource::disturbance:
+        return fmt::format("an unmeasured disturbance on {}, and not the model", at);
+      case RecordSource::sensor:
+        return fmt::format("the sensor of {} drifts away", model.sensor_cv < 0 ? at : cv(model.sensor_cv));
+      case RecordSource::valve:
+        return fmt::format("the valve of {} sticks", mv(model.valve_mv));
+      case RecordSource::data:
+        return late();
+      case RecordSource::nothing:
+      case RecordSource::unknown:
+        break;
+    }
+    return "none of the faults that are known here fits";
+  }
+
+  /// "all CVs are measured half a sample later than their rows say, as averages over a row are"
+  std::string late() const {
+    constexpr double kAverage = 0.5;
+    const RecordVerdict::Model& model = verdict_.model;
+    const double size = std::abs(model.late);
+    const std::string by = size == kAverage ? "half a sample"
+                           : size == 1.0    ? "one row"
+                                            : fmt::format("{:g} rows", size);
+    const std::string who = study_.cv_count() == 1 ? cv(0) + " is"
+                            : model.late_cv < 0    ? "all CVs are"
+                                                   : cv(model.late_cv) + " is";
+    if (size == kAverage)
+      return fmt::format("{} measured {} {} than the rows say, as averages over a row are", who, by,
+                         model.late < 0.0 ? "later" : "earlier");
+    return fmt::format("{} {} too {} against all MVs", who, by, model.late < 0.0 ? "early" : "late");
+  }
+
+  std::string model() const {
+    if (!verdict_.model.late_is_corrected)
+      return model_alone();
+    return fmt::format("{} In the record {}; this is corrected.", model_alone(), late());
+  }
+
+  std::string model_alone() const {
+    const RecordVerdict::Model& model = verdict_.model;
+    if (model.answer == ModelAnswer::explains)
+      return "The model explains the record.";
+    if (model.answer == ModelAnswer::cannot_tell)
+      return std::isnan(model.score)
+                 ? "The record cannot tell: no CV has enough samples."
+                 : "The record cannot tell: no gain that is wrong by half would show in it.";
+    Lines noisy, sentences;
+    for (const UnexplainedPart& part : model.at)
+      if (part.is_noise)
+        noisy.push_back(
+            fmt::format("The model does not explain {}: its noise is {:.2g} times that of the study.",
+                        cv(part.cv), part.score));
+    if (const Lines names = names_of(model.at, false); !names.empty()) {
+      const std::string sure =
+          model.probabilities
+              ? fmt::format("Most likely ({})",
+                            whole_percent_text(
+                                permille(*model.probabilities)[static_cast<std::size_t>(model.source)]))
+              : "Likeliest";
+      sentences.push_back(
+          fmt::format("The model no longer explains {}{}. {}: {}.", joined(names), since(), sure, what()));
+    }
+    sentences.insert(model.at.front().is_noise ? sentences.begin() : sentences.end(), noisy.begin(),
+                     noisy.end());
+    return fmt::format("{}", fmt::join(sentences, " "));
+  }
+
+  std::string ratio_text(const CvCost& cost) const {
+    constexpr double kBeyond = 100.0;
+    return cost.ratio > kBeyond
+               ? fmt::format("{} more than {:.0f} times", cv(cost.cv), kBeyond)
+               : fmt::format("{} {} times", cv(cost.cv), told_apart(cost.ratio, cost.threshold).first);
+  }
+
+  std::string loop() const {
+    const RecordVerdict::Loop& loop = verdict_.loop;
+    Lines dearer, all;
+    for (const CvCost& cost : loop.costs) {
+      all.push_back(ratio_text(cost));
+      if (cost.is_dearer())
+        dearer.push_back(all.back());
+    }
+    const std::string listed =
+        all.empty() ? "" : fmt::format(" ({} the loop as designed)", fmt::join(all, ", "));
+    std::string text;
+    switch (loop.answer) {
+      case LoopAnswer::dearer:
+        text = fmt::format("It costs more than the loop as designed{}: {}.", since(), joined(dearer));
+        if (verdict_.model.answer == ModelAnswer::fails && !verdict_.names_dearest())
+          text += fmt::format(" {} costs most, but the model explains it.", cv(loop.costs.front().cv));
+        break;
+      case LoopAnswer::as_designed:
+        text = fmt::format("{}{}.",
+                           verdict_.model.answer == ModelAnswer::fails ? "That costs nothing today"
+                                                                       : "It costs no more than designed",
+                           listed);
+        break;
+      case LoopAnswer::cannot_tell:
+        text = all.empty() ? "No CV has a setpoint or a range: nothing says what the loop costs."
+                           : fmt::format("Whether it costs more than is usual is not known{}.", listed);
+        break;
+    }
+    if (!verdict_.controller_is_alike)
+      text += " The controller of the study is not the one that ran.";
+    return text;
+  }
+
+  std::string action() const {
+    const RecordVerdict::Action& action = verdict_.action;
+    const std::string channel = action.channel ? channel_name(study_, *action.channel) : "";
+    switch (action.kind) {
+      case ActionKind::nothing:
+        return "Nothing.";
+      case ActionKind::repair:
+        return fmt::format(
+            "Repair {}: test it on the plant, and put into the model what the test confirms. This is "
+            "expected to take "
+            "away {} of what the loop costs{}.",
+            channel, promise_text(*action.promise), changes());
+      case ActionKind::sensor:
+        return fmt::format(
+            "Look at the sensor of {}, and at the noise of the study "
+            "(simulation.noise_standard_deviation).",
+            cv(action.cv));
+      case ActionKind::valve:
+        return fmt::format(
+            "Check the valve of {} and its positioner before the model: move it in small steps, and "
+            "see from which size on the plant answers.",
+            mv(action.mv));
+      case ActionKind::column:
+        return "Look at how the historian stamps and averages the columns, correct that, and assess again.";
+      case ActionKind::controller:
+        return "Bring the controller of the study to what ran (setpoints, limits, costs, tuning), and assess "
+               "again; "
+               "leave the model as it is.";
+      case ActionKind::limit:
+        return "Look at tuning, setpoints, limits and the operating point of that time; leave the model as "
+               "it is.";
+      case ActionKind::disturbance:
+        return fmt::format("Look for what disturbs {} from outside of the loop; leave the model as it is.",
+                           cv(action.cv));
+      case ActionKind::test:
+        return test(channel);
+      case ActionKind::wait:
+        break;
+    }
+    return wait(channel);
+  }
+
+  std::string changes() const {
+    Lines changes;
+    const Eigen::VectorXd& ratio = verdict_.action.promise->variance_ratio;
+    for (Eigen::Index cv = 0; cv < ratio.size(); ++cv)
+      changes.push_back(fmt::format("{} {:+d} %", this->cv(cv), std::lround(100.0 * (ratio(cv) - 1.0))));
+    return changes.empty() ? "" : fmt::format(" (variances: {})", fmt::join(changes, ", "));
+  }
+
+  std::string test(const std::string& channel) const {
+    const RecordVerdict::Action& action = verdict_.action;
+    if (channel.empty())
+      return fmt::format(
+          "Test the channels of {} with steps, and look at sensors, valves, limits and operators of that "
+          "time first.",
+          cv(verdict_.named_cv()));
+    if (action.worsened.empty() && action.promise && !(action.promise->gain > 0.0))
+      return fmt::format(
+          "Test {} with steps, and look for what else makes the loop dearer: by this record alone its "
+          "repair is expected to bring nothing ({}).",
+          channel, promise_text(*action.promise));
+    if (action.worsened.empty())
+      return fmt::format("Test {} with steps: the record does not tell how to correct it.", channel);
+    Lines worse;
+    for (const Eigen::Index each : action.worsened)
+      worse.push_back(cv(each));
+    return fmt::format(
+        "Test {} with steps. Do not put it into the controller before: {} would vary more with it.", channel,
+        joined(worse));
+  }
+
+  std::string wait(const std::string& channel) const {
+    const RecordVerdict::Action& action = verdict_.action;
+    if (!channel.empty() && action.promise)
+      return fmt::format(
+          "Wait: leave {} as it is, its repair is expected to {}. Test it before the loop is tuned tighter.",
+          channel,
+          action.promise->gain > 0.0
+              ? fmt::format("take away only {} of what the loop costs", promise_text(*action.promise))
+              : fmt::format("bring nothing ({})", promise_text(*action.promise)));
+    if (!channel.empty())
+      return fmt::format("Wait: leave {} as it is. Test it before the loop is tuned tighter.", channel);
+    if (verdict_.model.answer == ModelAnswer::fails)
+      return fmt::format("Wait: leave the model as it is, and assess {} again with the next record.",
+                         cv(verdict_.named_cv()));
+    if (!verdict_.has_trials)
+      return "Wait: assess again with simulated records (--trials), which show what is usual.";
+    return "Wait for a record in which setpoints or disturbances move more.";
+  }
+
+  Lines scores() const {
+    const RecordVerdict::Model& model = verdict_.model;
+    Lines lines;
+    for (const UnexplainedPart& part : model.at) {
+      const auto [score, threshold] = told_apart(part.score, part.threshold);
+      lines.push_back(fmt::format("{}: {} {}, threshold {}: not explained.", cv(part.cv),
+                                  part.is_noise ? "noise" : "score", score, threshold));
+    }
+    if (lines.empty() && !std::isnan(model.score)) {
+      const auto [score, threshold] = told_apart(model.score, model.threshold);
+      lines.push_back(fmt::format("All CVs: score {}, threshold {}: explained.", score, threshold));
+    }
+    return lines;
+  }
+
+  Lines costs() const {
+    Lines lines;
+    for (const CvCost& cost : verdict_.loop.costs) {
+      const auto [ratio, threshold] = told_apart(cost.ratio, cost.threshold);
+      lines.push_back(std::isnan(cost.threshold)
+                          ? fmt::format("{}: {} times, threshold not known.", cv(cost.cv), ratio)
+                          : fmt::format("{}: {} times, threshold {}: {}.", cv(cost.cv), ratio, threshold,
+                                        cost.is_dearer() ? "costs more" : "as designed"));
+    }
+    return lines;
+  }
+
+  std::string probabilities() const {
+    if (!verdict_.model.probabilities)
+      return "";
+    const auto shares = permille(*verdict_.model.probabilities);
+    Lines parts;
+    for (std::size_t place = 0; place < kRecordSources; ++place)
+      parts.push_back(
+          fmt::format("{} {:.1f} %", source_text(static_cast<RecordSource>(place)), shares[place] / 10.0));
+    return fmt::format("Probabilities: {}.", fmt::join(parts, ", "));
+  }
+
+  const RecordVerdict& verdict_;
+  const Study& study_;
+  const Lines& stamps_;
+};
+
+}  // namespace
+
+RecordVerdictText record_verdict_text(const RecordVerdict& verdict, const Study& study,
+                                      const std::vector<std::string>& stamps) {
+  return VerdictWriter(verdict, study, stamps).text();
+}
+
+std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
+  const std::string channel =
+      fmt::format("{}/{}", cv_name(study, named.channel.cv), mv_name(study, named.channel.mv));
+  const bool has_size = !std::isnan(named.size);
+  const std::string size = estimate_text(named.size, named.lower, named.upper, named.bound);
+  const std::string times =
+      has_size ? fmt::format("{} times that of the model", size) : "not that of the model";
+  const std::string& unit = study.plant.time_unit;
+  switch (named.parameter) {
+    case MismatchParameter::gain:
+      return fmt::format("the gain of {} in the plant is {}", channel, times);
+    case MismatchParameter::time_constant:
+      return fmt::format("the time constant of {} in the plant is {}", channel, times);
+    case MismatchParameter::dead_time:
+      return fmt::format("the dead time of {} in the plant is {}", channel,
+                         has_size ? dead_time_text(named.size, named.lower, named.upper, named.bound, unit)
+                                  : "not that of the model");
+    case MismatchParameter::second_order:
+      return fmt::format("{} has a further lag{}", channel,
+                         has_size ? fmt::format(" of {} {}", size, unit) : "");
+    case MismatchParameter::inverse_response:
+      return fmt::format("{} has an inverse response{}", channel,
+                         has_size ? fmt::format(" of {} {}", size, unit) : "");
+    case MismatchParameter::sign:
+      return fmt::format("the gain of {} has the other sign in the plant", channel);
+    case MismatchParameter::channel:
+      break;
+  }
+  return fmt::format("{} differs from the model", channel);
+}
+
+std::pair<std::string, std::string> told_apart(double a, double b) {
+  constexpr int kFewest = 3, kMost = 17;
+  constexpr double kPlain = 1000.0;  // from here on all digits before the point
+  const auto text = [](double number, int digits) {
+    return std::abs(number) < kPlain || !std::isfinite(number)
+               ? fmt::format("{:.{}g}", number, digits)
+               : fmt::format("{:.{}f}", number, digits - kFewest);
+  };
+  for (int digits = kFewest;; ++digits) {
+    std::pair<std::string, std::string> texts{text(a, digits), text(b, digits)};
+    if (texts.first != texts.second || a == b || digits == kMost)
+      return texts;
+  }
+}
+
+std::array<int, kRecordSources> permille(const OfSources& probabilities) {
+  constexpr int kWhole = 1000;
+  std::array<int, kRecordSources> shares{};
+  for (std::size_t place = 0; place < kRecordSources; ++place)
+    shares[place] = std::max(1, static_cast<int>(std::lround(kWhole * probabilities.each[place])));
+  // What rounding leaves falls on the largest.
+  *std::max_element(shares.begin(), shares.end()) +=
+      kWhole - std::accumulate(shares.begin(), shares.end(), 0);
+  return shares;
+}
+
+std::string source_text(RecordSource source) {
+  switch (source) {
+    case RecordSource::nothing:
+      return "nothing";
+    case RecordSource::mismatch:
+      return "a mismatch of the model";
+    case RecordSource::disturbance:
+      return "an unmeasured disturbance";
+    case RecordSource::both:
+      return "both";
+    case RecordSource::sensor:
+      return "a sensor";
+    case RecordSource::valve:
+      return "a valve that sticks";
+    case RecordSource::data:
+      return "the clock of the record";
+    case RecordSource::unknown:
+      break;
+  }
+  return "none of these";
+}
+
+}  // namespace mpm
