@@ -299,8 +299,8 @@ def check_trust(bench, study):
     check_one_estimate(first)
     assert first["repair"]["variance"]["predicted"][1] < 0.9 * first["repair"]["variance"]["now"][1], first["repair"]
     page = (bench.folder / "page.html").read_text()
-    for part in ("The verdict", "<dt>How sure</dt>", "What it costs", "How far to trust it", "<svg",
-                 *first["verdict"][:2]):
+    for part in ("The verdict", "<dt>Model</dt>", "<dt>Loop</dt>", "<dt>Action</dt>", "Why", "How far to trust it",
+                 "The channels over time", "<svg", *first["verdict"][:2]):
         assert part in page, part
     assert ('<details class="fold">' in page) == bool(first["warnings"]), first["warnings"]
     assert first["found"] == "fault" and first["model"]["score"] > first["model"]["trust"]["threshold"], first["model"]
@@ -317,7 +317,8 @@ def check_trust(bench, study):
     assert "no calibration run" in message and (bench.folder / "clean.h5").read_bytes() == mine, message
     assert "--stride: found 5 and no window" in bench.run(*words[:3], "--stride", 5, "--quiet", code=2).stderr
     text = " ".join(bench.run("assess", study, "plant.csv", "--trials", 0, "--model-error", 1, "--quiet").stdout.split())
-    assert "It is at xB, and most likely the model" in text and "dead time of xB/S" in text, text
+    assert "The model no longer explains xB" in text and "dead time of xB/S" in text, text
+    assert "How far to trust this is not known" in text, text
 
 
 def check_one_estimate(answer):
@@ -330,7 +331,9 @@ def check_one_estimate(answer):
     assert printed.count(f"{mismatch['size']:.3g} (") == 1 and "Identified again" not in printed, printed
     first = answer["candidates"][0]
     assert (first["cv"], first["mv"], first["proposed"]) == ("xB", "S", True), answer["candidates"]
-    assert f"take away {100 * first['gain']:.0f} % of what the loop costs" in printed, printed
+    gain = answer["action"]["gain"]
+    assert gain["value"] == first["gain"] and gain["lower"] <= gain["value"] <= gain["upper"], (gain, first)
+    assert f"take away {100 * first['gain']:.0f} % (" in printed and answer["action"]["kind"] == "repair", printed
 
 
 def check_valve(bench, study):
@@ -343,14 +346,15 @@ def check_valve(bench, study):
     told = list(csv.DictReader(bench.run("export", "valve.h5", "--table", "experiments").stdout.splitlines()))
     for index in range(2):
         bench.run("export", "valve.h5", "--table", "loops", "--index", index, "-o", "valve.csv")
-        answer = json.loads(bench.run("assess", study, "valve.csv", "--trials", 0, "--json", "--quiet").stdout)
-        said, odds = answer["methods"][0], answer["probabilities"]
+        answer = json.loads(bench.run("assess", study, "valve.csv", "--trials", 20, "--calibration", "valve.cal.h5", "--json",
+                                      "--quiet").stdout)
+        said, model, odds = answer["methods"][0], answer["model"], answer["probabilities"]
         assert said["source"] == "other" and said["valve"] in ("R", "S"), (told[index], said)
-        printed = " ".join(answer["verdict"])
-        assert f"the valve of {said['valve']} sticks" in printed and "(other)" not in printed, printed
-        assert f"Check the valve of {said['valve']}" in " ".join(answer["verdict"]), answer["verdict"]
-        assert set(odds) == {"mpm", "ud", "mpm_ud", "other"} and abs(sum(odds.values()) - 1) < 1e-12, odds
-        assert odds["other"] > 0.9 and answer["repair"] is None and answer["candidates"] == [], answer
+        assert model["source"] == "valve" and model["valve"] == said["valve"], model
+        assert f"the valve of {said['valve']} sticks" in answer["verdict"][0], answer["verdict"]
+        assert f"Check the valve of {said['valve']}" in answer["verdict"][2], answer["verdict"]
+        assert abs(sum(odds.values()) - 1) < 1e-12 and max(odds, key=odds.get) == "valve", odds
+        assert answer["repair"] is None and answer["candidates"] == [], answer
         assert ("R", "S")[int(told[index]["other_variable"])] == said["valve"], (told[index], said)
 
 

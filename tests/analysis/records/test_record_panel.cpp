@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -8,18 +9,23 @@
 
 #include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
+#include "analysis/methods/ours/mismatch_responses.hpp"
+#include "analysis/records/channel_error_fit.hpp"
+#include "analysis/records/channel_health.hpp"
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/controller_check.hpp"
+#include "analysis/records/cv_costs.hpp"
 #include "analysis/records/model_check.hpp"
+#include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
-#include "analysis/records/record_verdict.hpp"
 #include "analysis/records/trial_record.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/study_files/recorded_study.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/non_finite.hpp"
+#include "plants/linear/zero_order_hold.hpp"
 #include "scenarios/faults/fault.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
@@ -327,53 +333,105 @@ TEST_CASE("a simulated record begins where the record does, with its gaps", "[re
   CHECK(std::abs(off(0)) <= kTrialBias * study.simulation.noise_standard_deviation(1));
 }
 
-AssessmentRecord answer(bool flagged, double score) {
-  AssessmentRecord record;
-  record.status = AssessmentStatus::ok;
-  record.flagged = flagged;
-  record.score = score;
-  return record;
-}
+/// wood-berry in closed loop with errors of 2 % in all gains, and what may be wrong with its record.
+struct Suspect {
+  Study study = find_study("wood-berry");
+  PlantRecord record = recorded_loop(study, with_gains(study.plant.G, 1.02), 0);
+  RecordFrame frame = frame_of(record, true, 0.05);
 
-TEST_CASE("a record that the model explains has no fault", "[records]") {
-  const AssessmentRecord costly = answer(true, 9.0), cheap = answer(false, 0.1);
-  const AssessmentRecord explained = answer(false, 1.0), unexplained = answer(true, 3.0);
-  ControllerCheck own{.agreement = Eigen::Vector2d(0.99, 0.9), .pull = Eigen::Vector2d::Zero(), .away = {}};
-  ControllerCheck other = own;
-  other.agreement(1) = -2.0;
-  const auto verdict = [](const AssessmentRecord& said, const AssessmentRecord& model,
-                          const ControllerCheck& controller, bool allows_errors = true) {
-    return record_verdict({said, nullptr, model, nullptr, allows_errors}, controller);
+  Eigen::RowVectorXd response(Eigen::Index cv, Eigen::Index mv, const Eigen::RowVectorXd& x) const {
+    return channel_response(discretise(study.plant.G(cv, mv), study.controller.sample_time), x, 0.0);
+  }
+  AssessedLoop loop() const { return judged_loop(frame, record); }
+  RecordAlternatives alternatives() const { return record_alternatives(frame.as_kept, loop(), 0.05, {}); }
+};
+
+TEST_CASE("a fault that begins within the record is dated, and none where nothing changes", "[records]") {
+  const auto onset = [](const Suspect& suspect) {
+    return fault_onset(ChannelErrorFits(suspect.frame.as_kept, 0.05).of(suspect.loop(), 0), 1.2);
   };
-  CHECK(verdict(costly, unexplained, own) == RecordVerdict::fault);
-  CHECK(verdict(costly, unexplained, other) == RecordVerdict::fault);
-  CHECK(verdict(costly, explained, other) == RecordVerdict::other_controller);
-  CHECK(verdict(costly, explained, own) == RecordVerdict::unexplained_cost);
-  CHECK(verdict(cheap, unexplained, other) == RecordVerdict::nothing);
-  CHECK(verdict(costly, explained, own, false) == RecordVerdict::fault);
-  AssessmentRecord silent = costly;
-  silent.status = AssessmentStatus::failed;
-  CHECK(verdict(silent, unexplained, own) == RecordVerdict::none);
-  other.failure = "it has no move";
-  CHECK_FALSE(other.is_alike());
+  CHECK_FALSE(onset(Suspect{}));
+  Suspect throughout, later;
+  throughout.record.y.row(0) += 0.6 * throughout.response(0, 0, throughout.record.u.row(0));
+  CHECK_FALSE(onset(throughout));
+  Eigen::RowVectorXd u = later.record.u.row(0);
+  u.head(200).setZero();
+  later.record.y.row(0) += 0.6 * later.response(0, 0, u);
+  const auto found = onset(later);
+  REQUIRE(found);
+  CHECK(std::abs(found->sample - 200) < 40);  // as far as the MV moves next
+  CHECK((found->earliest <= found->sample && found->sample <= found->latest));
 }
 
-TEST_CASE("the threshold decides where there are simulated records", "[records]") {
-  const AssessmentRecord said = answer(true, 9.0), model = answer(true, 3.0);
-  TrialFindings of_said{.threshold = 12.0, .rates = {}, .as_high = {}, .same_source = {}};
-  TrialFindings of_model{.threshold = 3.5, .rates = {}, .as_high = {}, .same_source = {}};
-  const ControllerCheck own{
-      .agreement = Eigen::Vector2d::Ones(), .pull = Eigen::Vector2d::Zero(), .away = {}};
-  const RecordAnswers answers{said, &of_said, model, &of_model, true};
-  CHECK(record_verdict(answers, own) == RecordVerdict::nothing);
-  of_model.threshold = 2.5;
-  CHECK(record_verdict(answers, own) == RecordVerdict::fault);
-  of_model.threshold = 3.5;
-  of_said.threshold = 8.0;
-  CHECK(record_verdict(answers, own) == RecordVerdict::unexplained_cost);
-  RecordAnswers noisy = answers;
-  noisy.has_unexplained = true;
-  CHECK(record_verdict(noisy, own) == RecordVerdict::fault);
+TEST_CASE("columns of another clock are no error of the model, nor is a dead time another clock",
+          "[records]") {
+  const auto lateness = [](const Suspect& suspect) {
+    return common_lateness(suspect.frame.as_kept, suspect.loop(), 0.05);
+  };
+  CHECK(lateness(Suspect{}) == 0.0);
+  const Eigen::Index N = Suspect{}.record.samples();
+  Suspect early, late, averages, slow;
+  early.record.y.leftCols(N - 1) = Suspect{}.record.y.rightCols(N - 1);
+  CHECK(lateness(early) == -1.0);
+  late.record.y.rightCols(N - 1) = Suspect{}.record.y.leftCols(N - 1);
+  CHECK(lateness(late) == 1.0);
+  averages.record.y.leftCols(N - 1) =
+      0.5 * (Suspect{}.record.y.leftCols(N - 1) + Suspect{}.record.y.rightCols(N - 1));
+  CHECK(lateness(averages) == -0.5);
+  const TransferMatrix slower =
+      with_mismatches(slow.study.plant.G, {{0, 0, MismatchParameter::dead_time, 1.0}});
+  slow.record = recorded_loop(slow.study, slower, 0);
+  CHECK(lateness(slow) == 0.0);
+  early.frame.late = -1.0;
+  CHECK(model_score(early.frame, early.record) < 1.2);
+}
+
+TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever describes them", "[records]") {
+  Suspect drift, stays, disturbed;
+  const Eigen::Index N = drift.record.samples();
+  drift.record.y.row(1) += Eigen::RowVectorXd::LinSpaced(N, -0.05, 0.15).cwiseMax(0.0);
+  const RecordAlternatives drifts = drift.alternatives();
+  CHECK(drifts.sensor > std::max({drifts.disturbance, drifts.mismatch, drifts.valve, drifts.data}) + 5.0);
+  CHECK(drifts.sensor_cv == 1);
+  double position = 0.0;
+  Eigen::RowVectorXd x = stays.record.u.row(1);
+  for (double& each : x)
+    each = position = std::abs(each - position) > 0.012 ? each : position;
+  for (Eigen::Index cv = 0; cv < 2; ++cv)
+    stays.record.y.row(cv) += stays.response(cv, 1, x - stays.record.u.row(1));
+  const RecordAlternatives sticks = stays.alternatives();
+  CHECK(sticks.valve > std::max({sticks.disturbance, sticks.mismatch, sticks.sensor, sticks.data}) + 5.0);
+  CHECK(sticks.valve_mv == 1);
+  Eigen::RowVectorXd v = measurement_noise(disturbed.study, 5).row(0);
+  for (Eigen::Index k = 1; k < N; ++k)
+    v(k) = 0.95 * v(k - 1) + 2.0 * v(k);
+  disturbed.record.y.row(0) += v;
+  const RecordAlternatives slow = disturbed.alternatives();
+  CHECK(std::max({slow.valve, slow.sensor, slow.data}) < slow.disturbance + 5.0);
+}
+
+TEST_CASE("the cost of a CV is its controller's: about a setpoint, or outside of a range", "[records]") {
+  const Study study = find_study("wood-berry");
+  const Eigen::Index ny = study.cv_count();
+  const Eigen::MatrixXd y0 =
+      run_closed_loop(study, study.plant.G, experiment_signals(study, basis_draw().without_faults()),
+                      qp_solver_factory("auto"))
+          .y;
+  const Eigen::MatrixXd noise = measurement_noise(study, 3);
+  const Eigen::VectorXd v = noise.array().square().rowwise().mean();
+  const auto ratio = [&](const Eigen::MatrixXd& y, Eigen::Index from) {
+    return cv_costs(study, y, y0, v, from);
+  };
+  const std::vector<CvCost> same = ratio(y0 + noise, 0);
+  REQUIRE(std::ssize(same) == ny);
+  for (const CvCost& cost : same)
+    if (!std::isnan(cost.ratio))
+      CHECK(cost.ratio == Approx(1.0).margin(0.25));  // 400 samples of noise
+  Eigen::MatrixXd off = y0 + noise;
+  off.row(0).tail(100).array() += 2.0;  // xD has a range of 1
+  CHECK(ratio(off, 300).front().ratio > 2.0 * ratio(off, 0).front().ratio);
+  off.row(0).setConstant(kNaN);
+  CHECK(std::isnan(ratio(off, 0).front().ratio));
 }
 
 }  // namespace

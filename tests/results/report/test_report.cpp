@@ -281,13 +281,13 @@ TEST_CASE("report: the verdict on top is of the CV where no method names a sourc
 
 TEST_CASE("an estimate in words: bounds say so, what is shorter is not longer by less, and rounding is 0") {
   CHECK(estimate_text(0.62, 0.55, 0.7, SizeBound::none) == "0.62 (0.55 to 0.7)");
-  CHECK(estimate_text(0.101, 0.1, 0.103, SizeBound::at_most) == "at most 0.101 (0.1 to 0.103)");
-  CHECK(estimate_text(8, 7.1, 8, SizeBound::at_least) == "at least 8 (7.1 to 8)");
+  CHECK(estimate_text(0.101, 0.1, 0.103, SizeBound::at_most) == "at most 0.103");
+  CHECK(estimate_text(8, 7.1, 8, SizeBound::at_least) == "at least 7.1");
   CHECK(estimate_text(2, kNaN, kNaN, SizeBound::none) == "2");
   CHECK(estimate_text(-7.97973e-19, -0.1, 0.1, SizeBound::none) == "0 (-0.1 to 0.1)");
   CHECK(dead_time_text(1.99, 1.9, 2.1, SizeBound::none, "s") == "longer by 1.99 (1.9 to 2.1) s");
   CHECK(dead_time_text(-0.434, -0.6, 0.1, SizeBound::none, "min") == "shorter by 0.434 (-0.1 to 0.6) min");
-  CHECK(dead_time_text(-3, -3, -2, SizeBound::at_most, "s") == "shorter by at least 3 (2 to 3) s");
+  CHECK(dead_time_text(-3, -3, -2, SizeBound::at_most, "s") == "shorter by at least 2 s");
   CHECK(dead_time_text(-1e-17, -1, 1, SizeBound::none, "s") == "longer by 0 (-1 to 1) s");
 }
 
