@@ -149,13 +149,6 @@ std::vector<std::string> IdentifiedModel::warnings(const Study& study) const {
   return sentences;
 }
 
-std::vector<std::string> input_names(const PlantModel& plant) {
-  std::vector<std::string> names;
-  for (const PlantModel::Variable& input : all_inputs(plant))
-    names.push_back(input.name);
-  return names;
-}
-
 Eigen::VectorXd usual_steps(const Study& study) {
   Eigen::VectorXd sizes(study.mv_count() + std::ssize(study.plant.mds));
   for (Eigen::Index input = 0; input < sizes.size(); ++input)

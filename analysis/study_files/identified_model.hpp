@@ -33,9 +33,6 @@ struct IdentifiedModel {
   std::vector<std::string> warnings(const Study& study) const;
 };
 
-/// The names of the inputs of a plant: MVs and then MDs.
-std::vector<std::string> input_names(const PlantModel& plant);
-
 /// The steps that a study suggests for its inputs (MVs and then MDs): 2 % of the range of an MV between its
 /// hard limits, the largest step of an MD in the study; NaN where there is none.
 Eigen::VectorXd usual_steps(const Study& study);

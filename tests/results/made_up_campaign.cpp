@@ -62,8 +62,7 @@ class Numbers {
 };
 
 SolverStatistics solver(Numbers& numbers) {
-  constexpr std::int64_t kUncertified = 0;  // not kept
-  return {numbers.whole(), numbers.whole(), numbers.whole(), kUncertified, numbers.next()};
+  return {numbers.whole(), numbers.whole(), numbers.whole(), numbers.next()};
 }
 
 MpmIndicator indicator(Numbers& numbers) {
@@ -192,6 +191,7 @@ Trajectory trajectory(Numbers& numbers, const Study& study, ControlStatus status
           numbers.matrix(study.mv_count(), samples),
           numbers.matrix(study.md_count(), samples),
           study.controller.has_setpoints() ? numbers.matrix(study.cv_count(), samples) : Eigen::MatrixXd(),
+          study.record.resamples() ? numbers.matrix(study.cv_count(), samples) : Eigen::MatrixXd(),
           solver(numbers),
           status == ControlStatus::failed ? LoopFailure::plant : LoopFailure::none,
           status == ControlStatus::failed ? "it ran \xC3\xBC"
