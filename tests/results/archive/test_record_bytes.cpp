@@ -213,6 +213,7 @@ ExperimentRecord full_record(const Campaign& campaign) {
                              Eigen::MatrixXd::Zero(2, 60),
                              Eigen::MatrixXd::Zero(1, 60),
                              Eigen::MatrixXd::Zero(2, 60),
+                             {},
                              {}};
   record.loop->y_sim = Eigen::MatrixXd::Zero(2, 60);
   for (AssessmentRecord& said : record.assessments) {
