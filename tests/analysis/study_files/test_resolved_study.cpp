@@ -245,7 +245,8 @@ std::string unexcited_study_text() {
 std::string world_study_text() {
   return replaced(small_study(), "samples = 60", "samples = 60\nexcitation = \"each\"") +
          "\n[assessment.likelihood]\nhypotheses = \"all\"\n[assessment.arx-oe]\nform = \"windows\"\nwindow = "
-         "300\nstep = 50\nnu = 0.02\nshare = 0.4\n[world]\ncount = 3\ngain_factor = {uniform = "
+         "300\nstep = 50\nnu = 0.02\nshare = 0.4\n[calibration]\nhealthy = 6\nworlds = 5\n[world]\ncount = "
+         "3\ngain_factor = {uniform = "
          "[0.95, 1.05]}\n"
          "background = {cv_size = {constant = 0.5}, time_constant = {constant = 10}}\n";
 }

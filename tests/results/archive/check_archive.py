@@ -117,7 +117,7 @@ def check_h5py(path, variables, attributes):
             for key in variables[name]:
                 check_variable(group[key])
         assert file.attrs["filetype"] == "mpmbench archive"
-        assert list(file.attrs["format_version"]) == [2, 5]
+        assert list(file.attrs["format_version"]) == [2, 6]
         assert file.attrs["master_seed"] == 12345678901234567890
         assert file["message"].asstr()[4] == "ended by signal 9: \u00fc"
         assert file["message"].asstr()[0] == ""

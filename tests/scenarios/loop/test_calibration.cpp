@@ -37,7 +37,7 @@ TEST_CASE("calibration: what is no rate, no number of loops or the seed of the s
       {"", "[calibration]\n seed = 7\n", " seed = 7",
        "calibration.seed: found 7, the seed of the study; allowed: another one"},
       {"", "[calibration]\nloops = 7\n", "loops = 7",
-       "calibration: found unknown key 'loops'; allowed: false_alarms, healthy, ud, seed"},
+       "calibration: found unknown key 'loops'; allowed: false_alarms, healthy, ud, worlds, seed"},
   });
 }
 
