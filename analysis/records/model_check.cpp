@@ -8,6 +8,7 @@
 
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/channel_health.hpp"
+#include "analysis/records/record_alternatives.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -16,12 +17,12 @@ namespace {
 class ModelCheck final : public AssessmentMethod {
  public:
   ModelCheck(const AssessmentContext& context, double delta)
-      : fits_(context.study, delta), settling_(slowest_settling(context.study)) {}
+      : study_(context.study), fits_(context.study, delta), settling_(slowest_settling(context.study)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     Assessment assessment;
     assessment.score = 0.0;
-    double health = 0.0;
+    double health = 0.0, dependence = 0.0;
     const std::vector<Eigen::Index> begins = health_periods(loop.samples(), settling_);
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const ChannelErrorFit fit = fits_.of(loop, cv);
@@ -29,16 +30,20 @@ class ModelCheck final : public AssessmentMethod {
       assessment.cvs.push_back({score > kFarTooLarge, score});
       assessment.score = std::max(assessment.score, score);
       assessment.numbers.push_back({"noise", fit.noise, cv});
+      if (const double F = input_dependence(study_, loop, fit, cv); F > dependence)
+        dependence = F;
       for (const ChannelHistory& history : channel_histories(fit, cv, begins, loop.samples(), kInfinity))
         for (const ChannelPeriod& period : history.periods)
           health = std::max(health, period.score);
     }
     assessment.numbers.push_back({"health", health});
+    assessment.numbers.push_back({kFitNumber, dependence});
     assessment.flagged = assessment.score > kFarTooLarge;
     return assessment;
   }
 
  private:
+  const Study& study_;
   ChannelErrorFits fits_;
   Eigen::Index settling_;
 };
@@ -80,6 +85,7 @@ AssessmentMethodInfo model_check_method(double delta) {
        .numbers = {{"noise", NumberScope::cv, "half of the mean squared difference of successive errors",
                     "CV unit^2"},
                    {"health", NumberScope::loop, "largest score of a channel in a period of its own"},
+                   {kFitNumber, NumberScope::loop, "largest input_dependence() of a CV"},
                    {kCostNumber, NumberScope::cv, "cost over that of the loop as designed"},
                    {kCostSinceNumber, NumberScope::cv, "the same since the onset of the record"}},
        .origin = "mpmbench assess",

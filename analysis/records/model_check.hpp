@@ -11,6 +11,9 @@ inline constexpr const char* kModelCheck = "model-error";
 inline constexpr const char* kCostNumber = "cost";
 inline constexpr const char* kCostSinceNumber = "cost_since";
 
+/// The largest input_dependence() of a CV.
+inline constexpr const char* kFitNumber = "fit";
+
 /// A score that is flagged without simulated records. Of 26 healthy records (tests/reliability/records.py,
 /// seeds 2 and 3) the largest was 1.16.
 inline constexpr double kFarTooLarge = 1.5;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -46,6 +47,21 @@ class CvErrors {
   }
   double with(const Columns& free) const { return log_likelihood(e_, told_columns(free)); }
 
+  /// F of the regression of the innovations on `moves` (N of the loop), where h and `free` are in the errors.
+  double dependence(const Eigen::RowVectorXd& h, const Columns& free, const Columns& moves) const {
+    Eigen::VectorXd w;
+    log_likelihood(e_ - told(h(samples_).transpose()), told_columns(free), &w);
+    Columns M(w.size(), moves.cols());
+    for (Eigen::Index column = 0; column < moves.cols(); ++column)
+      M.col(column) = moves.col(column)(samples_).tail(w.size());
+    M.rowwise() -= M.colwise().mean();
+    w.array() -= w.mean();
+    const Eigen::ColPivHouseholderQR<Columns> qr(M);
+    const auto p = static_cast<double>(qr.rank()), n = static_cast<double>(w.size());
+    const double left = (w - M * qr.solve(w)).squaredNorm();
+    return p > 0.0 && n > p + 2.0 && left > 0.0 ? (w.squaredNorm() - left) / p / (left / (n - p)) : kNaN;
+  }
+
  private:
   static constexpr Eigen::Index kOrder = 3;
   static constexpr int kPasses = 3;
@@ -80,7 +96,8 @@ class CvErrors {
     return A.ldlt().solve(past.transpose() * r.tail(n));
   }
 
-  double log_likelihood(const Eigen::VectorXd& e, const Columns& free) const {
+  double log_likelihood(const Eigen::VectorXd& e, const Columns& free,
+                        Eigen::VectorXd* innovations = nullptr) const {
     const auto n = static_cast<double>(e.size());
     Columns Z(e.size(), X_.cols() + free.cols());
     Z << X_, free;
@@ -94,7 +111,10 @@ class CvErrors {
       A.diagonal().head(X_.cols()).array() += 1.0;
       A.diagonal().array() += 1e-12;
       of_errors = A.ldlt().solve(white.transpose() * white_e / variance);
-      squares = (white_e - white * of_errors).squaredNorm();
+      const Eigen::VectorXd w = white_e - white * of_errors;
+      squares = w.squaredNorm();
+      if (innovations != nullptr)
+        *innovations = w;
       variance = std::max(1e-300, squares / static_cast<double>(white_e.size()));
       if (pass + 1 < kPasses)
         a = autoregression_of(e - Z * of_errors);
@@ -107,6 +127,31 @@ class CvErrors {
   Eigen::VectorXd e_;
   double none_ = 0.0;
 };
+
+/// The moves of the inputs of a CV behind their dead times, N x columns.
+Columns moves_of(const Study& study, const AssessedLoop& loop, Eigen::Index cv) {
+  constexpr Eigen::Index kLags = 6;
+  const Eigen::Index N = loop.samples();
+  std::vector<Eigen::VectorXd> all;
+  for (Eigen::Index place = 0; place < study.mv_count() + study.md_count(); ++place) {
+    const TransferFunction channel = study.assessed_channel(cv, place);
+    if (channel.is_zero())
+      continue;
+    const Eigen::RowVectorXd u =
+        place < study.mv_count() ? loop.u.row(place) : loop.d.row(place - study.mv_count());
+    const auto dead = static_cast<Eigen::Index>(channel.dead_time() / study.controller.sample_time);
+    for (Eigen::Index lag = dead + 1; lag <= dead + kLags; ++lag) {
+      Eigen::VectorXd moves = Eigen::VectorXd::Zero(N);
+      for (Eigen::Index k = lag + 1; k < N; ++k)
+        moves(k) = u(k - lag) - u(k - lag - 1);
+      all.push_back(std::move(moves));
+    }
+  }
+  Columns columns(N, static_cast<Eigen::Index>(all.size()));
+  for (std::size_t place = 0; place < all.size(); ++place)
+    columns.col(static_cast<Eigen::Index>(place)) = all[place];
+  return columns;
+}
 
 /// A valve that stays until the signal is more than d away, and then goes where it is.
 Eigen::RowVectorXd staying_valve(const Eigen::RowVectorXd& u, double d, double start) {
@@ -142,12 +187,34 @@ class Comparison {
     }
   }
 
-  RecordAlternatives all() const {
+  RecordAlternatives all() {
     RecordAlternatives found{.disturbance = none_};
     found.mismatch = mismatch();
     data(found);
     sensor(found);
     valve(found);
+    const Columns none(loop_.samples(), 0);
+    const auto none_of = [this](Eigen::Index) -> Eigen::RowVectorXd {
+      return Eigen::RowVectorXd::Zero(loop_.samples());
+    };
+    found.fit[RecordSource::disturbance] = dependence(none_of, none);
+    found.fit[RecordSource::sensor] = found.fit[RecordSource::disturbance];
+    found.fit[RecordSource::data] = dependence(
+        [this, &found](Eigen::Index cv) -> Eigen::RowVectorXd {
+          const Eigen::RowVectorXd y_sim = loop_.y_sim.row(cv);
+          const bool is_late = found.data_cv < 0 || found.data_cv == cv;
+          return late_by(y_sim, is_late ? found.late : 0.0) - y_sim;
+        },
+        none);
+    if (found.valve_mv >= 0)
+      found.fit[RecordSource::valve] = dependence(
+          [this, &found](Eigen::Index cv) -> Eigen::RowVectorXd {
+            const TransferFunction channel = study_.assessed_channel(cv, found.valve_mv);
+            if (channel.is_zero())
+              return Eigen::RowVectorXd::Zero(loop_.samples());
+            return channel_response(discretise(channel, study_.controller.sample_time), off_, 0.0);
+          },
+          none);
     return found;
   }
 
@@ -175,6 +242,16 @@ class Comparison {
   }
 
  private:
+  /// The largest F of a CV, where h(cv) and `free` are in its errors.
+  template <class H>
+  double dependence(H h, const Columns& free) const {
+    double most = 0.0;
+    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv)
+      if (const double F = of(cv).dependence(h(cv), free, moves_of(study_, loop_, cv)); F > most)
+        most = F;
+    return most;
+  }
+
   /// N x channels of a CV, late.
   Columns responses(Eigen::Index cv, double late) const {
     std::vector<Eigen::RowVectorXd> all;
@@ -289,7 +366,7 @@ class Comparison {
     return sum - samples;
   }
 
-  void valve(RecordAlternatives& found) const {
+  void valve(RecordAlternatives& found) {
     constexpr double kBands[] = {0.02, 0.04, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4};
     constexpr double kCloser[] = {0.84, 0.92, 1.08, 1.18};
     constexpr double kJumps[] = {0.0, 0.3, 0.6, 1.0};
@@ -321,6 +398,7 @@ class Comparison {
         if (best > found.valve) {
           found.valve = best;
           found.valve_mv = mv;
+          off_ = valve(band) - u;
         }
       }
     }
@@ -331,6 +409,7 @@ class Comparison {
   Eigen::Index onset_;
   std::vector<CvErrors> cvs_;
   double none_ = 0.0;
+  Eigen::RowVectorXd off_;  ///< x - u of the best valve
 };
 
 }  // namespace
@@ -350,6 +429,13 @@ Eigen::RowVectorXd late_by(const Eigen::RowVectorXd& y, double s) {
 RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& loop, double delta,
                                        const std::optional<FaultOnset>& onset) {
   return Comparison(study, loop, delta, onset).all();
+}
+
+double input_dependence(const Study& study, const AssessedLoop& loop, const ChannelErrorFit& fit,
+                        Eigen::Index cv) {
+  return CvErrors(loop, fit, cv)
+      .dependence(Eigen::RowVectorXd::Zero(loop.samples()), Columns(loop.samples(), 0),
+                  moves_of(study, loop, cv));
 }
 
 double common_lateness(const Study& study, const AssessedLoop& loop, double delta) {

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessed_loop.hpp"
+#include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/record_verdict.hpp"
 #include "scenarios/study/study.hpp"
 
@@ -32,11 +33,18 @@ struct RecordAlternatives {
   Eigen::Index data_cv = -1;                                                        ///< -1: all CVs
   double late = 0.0;                                                                ///< s
   Eigen::Index sensor_cv = -1, valve_mv = -1;
+  OfSources fit = {};  ///< the largest input_dependence() of a CV where this is taken off; none of a mismatch
 };
 
 /// `delta`: the errors of the model, 0: none. Throws InputError as ChannelErrorFits.
 RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& loop, double delta,
                                        const std::optional<FaultOnset>& onset);
+
+/// Do the innovations of the errors of a CV still depend on its inputs? F of their regression on the last six
+/// moves of each input behind its dead time, 1 on average where a disturbance explains them. An absolute
+/// test: what no hypothesis explains raises it.
+double input_dependence(const Study& study, const AssessedLoop& loop, const ChannelErrorFit& fit,
+                        Eigen::Index cv);
 
 /// y at s samples before, a straight line between samples; the first and the last value beyond the ends.
 Eigen::RowVectorXd late_by(const Eigen::RowVectorXd& y, double s);

@@ -197,6 +197,7 @@ void add_trial(RecordAssessment& assessment, const Study& study,
     const Eigen::Index ny = assessment.study.cv_count();
     trial.cost = number_thresholds(loops.records, last, kCostNumber, ny);
     trial.cost_since = number_thresholds(loops.records, last, kCostSinceNumber, ny);
+    trial.fit = fit_threshold(loops.records, last);
     trial.health = number_thresholds(loops.records, last, "health", 1)(0);
     trial.counts_of = [records = loops.records, keeps = loops.keeps, last, threshold = trial.model.threshold](
                           RecordSource named) { return trial_counts(records, last, threshold, 0, named); };
@@ -350,7 +351,8 @@ void add_sources(const RecordFrame& frame, RecordAssessment& assessment, Verdict
         record_alternatives(frame.as_kept, assessment.loop, frame.model_error, evidence.onset);
     if (frame.late != 0.0)
       alternatives.data = -kInfinity;  // nothing is left of it
-    evidence.weights = with_alternatives(evidence.weights, alternatives);
+    evidence.weights =
+        with_alternatives(evidence.weights, alternatives, assessment.trial ? assessment.trial->fit : kNaN);
     evidence.valve_mv = alternatives.valve_mv;
     evidence.sensor_cv = alternatives.sensor_cv;
     if (frame.late == 0.0) {

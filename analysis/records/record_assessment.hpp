@@ -38,6 +38,7 @@ struct RecordTrial {
   TrialFindings model;                 ///< of RecordAssessment::model
   Eigen::VectorXd cost = {},
                   cost_since = {};  ///< thresholds of the costs of the CVs, ny (number_thresholds())
+  double fit = kNaN;                ///< fit_threshold()
   double health = kNaN;             ///< that of the score of a channel in a period
   TrialCounts counts = {};          ///< of the source that the verdict names
   std::function<TrialCounts(RecordSource)> counts_of = {};

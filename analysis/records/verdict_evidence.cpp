@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/findings/trial_findings.hpp"
+#include "analysis/records/model_check.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
 
@@ -123,8 +124,19 @@ OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRec
   return weights;
 }
 
-OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives) {
-  constexpr double kPrior = 0.1;
+double fit_threshold(const RecordRange& records, std::size_t method) {
+  std::vector<double> fits;
+  records.each([&](const ExperimentRecord& record) {
+    if (has_verdict(record, method) &&
+        (is_without_fault(record) || record_source(source_of(record.draw.kind)) == RecordSource::disturbance))
+      fits.push_back(record.assessments[method].number(kFitNumber));
+  });
+  return trial_threshold(fits);
+}
+
+OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
+                            double most_fit) {
+  constexpr double kPrior = 0.1, kMostly = 0.8;
   const double usual = std::max(alternatives.mismatch, alternatives.disturbance);
   OfSources all;
   const double most = std::max({usual, alternatives.valve, alternatives.sensor, alternatives.data});
@@ -145,6 +157,12 @@ OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& 
   }
   for (const RecordSource source : kUsual)
     all[source] = share(usual) * told[source] / sum;
+  const auto best =
+      static_cast<std::size_t>(std::max_element(all.each.begin(), all.each.end()) - all.each.begin());
+  if (alternatives.fit.each[best] > most_fit) {
+    all[RecordSource::unknown] += kMostly * all.each[best];
+    all.each[best] *= 1.0 - kMostly;
+  }
   return all;
 }
 

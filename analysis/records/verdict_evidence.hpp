@@ -33,7 +33,12 @@ OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRec
 
 /// The weights where further hypotheses count: valve, sensor and data by their likelihood against the better
 /// one of mismatch and disturbance, a tenth as probable before; mismatch, disturbance and both share the rest
-/// as they did.
-OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives);
+/// as they did. Where the most probable one leaves more than `most_fit` of RecordAlternatives::fit, most of
+/// its weight goes to none of these.
+OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
+                            double most_fit);
+
+/// The threshold of kFitNumber: as number_thresholds(), of simulated records without a mismatch.
+double fit_threshold(const RecordRange& records, std::size_t method);
 
 }  // namespace mpm

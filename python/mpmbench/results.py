@@ -164,12 +164,14 @@ class Board(Rated):
 
 
 class Assessment:
-    """The verdict on a record. `found` is a word of docs/own_records.md, `verdict` the sentences, `json` all that the
-    program says, `page` the page. `context()` is that of the study."""
+    """The verdict on a record. `model`, `loop` and `action` are its three answers and `found` their word, as
+    docs/own_records.md has them; `verdict` the sentences, a line an answer first; `json` all that the program says, `page`
+    the page. `context()` is that of the study."""
 
     def __init__(self, text, page, context):
         self.json, self.page, self._context = json.loads(text), page, context
         self.found, self.verdict = self.json["found"], self.json["verdict"]
+        self.model, self.loop, self.action = (self.json.get(answer) for answer in ("model", "loop", "action"))
 
     def __str__(self):
         return "\n".join(self.verdict)
@@ -182,8 +184,9 @@ class Assessment:
         return Repair(json.dumps(self.json["repair"]), self._context())
 
     def _repr_html_(self):
-        first, *others = map(html.escape, self.verdict)
-        return f"<p><b>{first}</b></p><ul>{''.join(f'<li>{each}</li>' for each in others)}</ul>"
+        answers, others = self.verdict[:3], self.verdict[3:]
+        first = "<br>".join(f"<b>{name}</b> {html.escape(line)}" for name, line in zip(("Model", "Loop", "Action"), answers))
+        return f"<p>{first}</p><ul>{''.join(f'<li>{html.escape(each)}</li>' for each in others)}</ul>"
 
     def __repr__(self):
         return f"<mpmbench.Assessment: {self.found}: {self.verdict[0]}>"

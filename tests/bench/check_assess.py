@@ -377,7 +377,7 @@ def check_healthy(bench, study):
     healthy = json.loads(bench.run(*words, "--trials", 100).stdout)
     assert healthy["found"] == "nothing" and not healthy["methods"][0]["flagged"], healthy["verdict"]
     assert healthy["unjudged"] > 0 and healthy["controller"]["alike"], healthy["controller"]
-    rates = healthy["methods"][0]["trust"]["rates"]
+    rates = healthy["model"]["trust"]["rates"]
     assert rates["false_alarm_healthy"]["hits"] <= 2 and rates["detected_impact"]["value"] > 0.5, rates
 
 

@@ -68,9 +68,9 @@ def main(program, sources):
         for seed in (1, 2, 3):
             for kind in RECORDS:
                 answer = json.loads(run("assess", "my.toml", f"{seed}-{kind}.csv", "--trials", 20, "--quiet", "--json"))
-                said = answer["methods"][0]["source"]
-                assert (answer["found"], said) == (("nothing", "none") if kind == "healthy" else ("fault", kind)), (
-                    seed, kind, answer["found"], answer["methods"][0])
+                source = {"healthy": "nothing", "mpm": "mismatch", "ud": "disturbance"}[kind]
+                assert (answer["found"], answer["model"]["source"]) == (
+                    "nothing" if kind == "healthy" else "fault", source), (seed, kind, answer["verdict"], answer["model"])
 
 
 if __name__ == "__main__":

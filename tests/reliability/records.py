@@ -126,17 +126,21 @@ def assessed(bench, plant, kind, seed, trials):
     (folder / "own.toml").write_text(text + data)
     answer = json.loads(bench.run("assess", folder / "own.toml", folder / "record.csv", "--trials", trials, "--json",
                                   "--quiet", "--jobs", 1))
-    said, trust = answer["methods"][0], answer["methods"][0].get("trust")
+    said, trust = answer["model"], answer["model"]["trust"]
     alarms = trust and trust["rates"]["false_alarm_healthy"]
-    sizes = trust and trust["rates"]["size_covered"]  # of the simulated records: is the true size in the interval?
+    method = answer["methods"][0].get("trust")
+    sizes = method and method["rates"]["size_covered"]  # of the simulated records: is the true size in the interval?
     return {"plant": plant, "kind": kind, "seed": seed, "found": answer["found"], "impact": told.get("impact"),
-            "said": said["source"], "score": said.get("score"), "printed": alarms and [alarms["hits"], alarms["total"]],
+            "said": SOURCES.get(said["source"], said["source"]), "verdict": answer["verdict"][:3], "printed": alarms and [alarms["hits"], alarms["total"]],
             "sizes": sizes and [sizes["hits"], sizes["total"]],
-            "model": answer["model"]["score"], "model_flagged": answer["model"]["flagged"],
+            "model": answer["model"]["score"], "model_flagged": answer["model"]["answer"] == "fails",
             "alike": answer["controller"]["alike"], "agreement": answer["controller"]["agreement"],
             "closed_loop": answer["controller"]["closed_loop"],
             "unjudged": answer["unjudged"], "lags": [w for w in answer["warnings"] if "the column of" in w], "no_trial": answer["trial"].get("why"),
             "p": answer.get("probabilities")}
+
+
+SOURCES = {"nothing": "none", "mismatch": "mpm", "disturbance": "ud", "both": "mpm_ud"}
 
 
 def main():

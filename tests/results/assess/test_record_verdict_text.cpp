@@ -130,8 +130,9 @@ bool names(const std::string& sentence, const std::string& cv) {
 }
 
 void read_scores(const RecordVerdictText& text, const std::vector<std::string>& cvs, Reading& reading) {
-  const std::string blamed = std::regex_replace(text.model, std::regex("Most likely.*|Likeliest.*"),
-                                                "");  // the source is another question
+  const std::string blamed =
+      std::regex_replace(text.model, std::regex("(Most likely|Likeliest).*?(?=The model does not explain|$)"),
+                         "");  // the source is another question
   std::map<std::string, bool> above;
   bool all_below = false;
   for (const std::string& line : text.scores) {
