@@ -13,7 +13,7 @@
 #include "analysis/methods/method_table.hpp"
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/column_lags.hpp"
-#include "analysis/records/cv_costs.hpp"
+#include "analysis/records/cost_of_record.hpp"
 #include "analysis/records/model_check.hpp"
 #include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
@@ -283,8 +283,8 @@ std::vector<CvCost> costs_since(const RecordFrame& frame, const RecordAssessment
                                 Eigen::Index from) {
   if (!assessment.model.answered())
     return {};
-  return cv_costs(frame.as_kept, assessment.record.y, frame.y0, assessment.model.values("noise").col(0),
-                  std::max(from, frame.unjudged));
+  return cost_of_record(frame.as_kept, assessment.record.y, frame.y0, assessment.model.values("noise").col(0),
+                        std::max(from, frame.unjudged));
 }
 
 /// Since when the CV is wrong that the model explains least.

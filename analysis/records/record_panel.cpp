@@ -9,7 +9,7 @@
 
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
-#include "analysis/records/cv_costs.hpp"
+#include "analysis/records/cost_of_record.hpp"
 #include "analysis/records/model_check.hpp"
 #include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/untold_part.hpp"
@@ -108,7 +108,7 @@ void add_costs(const RecordFrame& frame, const PlantRecord& record, AssessmentRe
   for (const auto& [number, from] :
        {std::pair{kCostNumber, frame.unjudged}, std::pair{kCostSinceNumber, frame.since}})
     for (const CvCost& cost :
-         cv_costs(frame.as_kept, record.y, frame.y0, noise, std::max(from, frame.unjudged)))
+         cost_of_record(frame.as_kept, record.y, frame.y0, noise, std::max(from, frame.unjudged)))
       said.set_number(number, cost.ratio, cost.cv);
 }
 

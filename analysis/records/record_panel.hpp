@@ -65,9 +65,9 @@ class RecordPanel {
   /// The frame must outlive the panel. Throws InputError for options of a method that do not fit.
   explicit RecordPanel(const RecordFrame& frame);
 
-  /// Answers of model_check_method() have the costs of the CVs as well (cv_costs()), where the frame has y0.
-  /// `healthy` is the same loop without its fault, from which a chosen benchmark is taken; null: the record
-  /// itself. Throws InputError when no benchmark is found.
+  /// Answers of model_check_method() have the costs of the CVs as well (cost_of_record()), where the frame
+  /// has y0. `healthy` is the same loop without its fault, from which a chosen benchmark is taken; null: the
+  /// record itself. Throws InputError when no benchmark is found.
   JudgedRecord judge(const PlantRecord& record, const PlantRecord* healthy = nullptr);
 
  private:

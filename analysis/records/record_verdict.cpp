@@ -29,7 +29,8 @@ bool costs_more(const CvCost& a, const CvCost& b) {
 
 /// The CVs that the model does not explain: those that cost more first, the dearest first, and then the one
 /// furthest off.
-std::vector<UnexplainedPart> unexplained_parts(const VerdictEvidence& evidence) {
+std::vector<UnexplainedPart> unexplained_parts(const VerdictEvidence& evidence,
+                                               const std::vector<CvCost>& costs) {
   std::vector<UnexplainedPart> parts = evidence.noisy;
   for (Eigen::Index cv = 0; cv < evidence.model_scores.size(); ++cv) {
     const bool is_noisy =
@@ -37,8 +38,8 @@ std::vector<UnexplainedPart> unexplained_parts(const VerdictEvidence& evidence) 
     if (evidence.model_scores(cv) > evidence.model_threshold && !is_noisy)
       parts.push_back({cv, evidence.model_scores(cv), evidence.model_threshold});
   }
-  const auto excess = [&evidence](const UnexplainedPart& part) {
-    const CvCost* const cost = cost_of(evidence.costs, part.cv);
+  const auto excess = [&costs](const UnexplainedPart& part) {
+    const CvCost* const cost = cost_of(costs, part.cv);
     return cost != nullptr && cost->is_dearer() ? cost->ratio : 0.0;
   };
   std::stable_sort(parts.begin(), parts.end(), [&excess](const UnexplainedPart& a, const UnexplainedPart& b) {
@@ -75,14 +76,14 @@ RecordSource likeliest(const OfSources& weights) {
   return best;
 }
 
-RecordVerdict::Model model_answer(const VerdictEvidence& evidence) {
+RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::vector<CvCost>& costs) {
   RecordVerdict::Model model;
   const auto known = !evidence.model_scores.array().isNaN();
   const bool has_scores = known.any() && !std::isnan(evidence.model_threshold);
   model.threshold = evidence.model_threshold;
   if (has_scores)
     model.score = known.select(evidence.model_scores.array(), -kInfinity).maxCoeff();
-  model.at = unexplained_parts(evidence);
+  model.at = unexplained_parts(evidence, costs);
   const bool fails = !model.at.empty();
   model.answer = fails                                                ? ModelAnswer::fails
                  : has_scores && evidence.least_visible <= kHalfAGain ? ModelAnswer::explains
@@ -113,6 +114,8 @@ RecordVerdict::Loop loop_answer(const VerdictEvidence& evidence) {
   RecordVerdict::Loop loop;
   std::copy_if(evidence.costs.begin(), evidence.costs.end(), std::back_inserter(loop.costs),
                [](const CvCost& cost) { return !std::isnan(cost.ratio); });
+  for (CvCost& cost : loop.costs)
+    cost.threshold = std::isnan(cost.threshold) ? kNaN : std::max(cost.threshold, 1.0);
   std::stable_sort(loop.costs.begin(), loop.costs.end(), costs_more);
   const bool is_known = std::any_of(loop.costs.begin(), loop.costs.end(),
                                     [](const CvCost& cost) { return !std::isnan(cost.threshold); });
@@ -215,7 +218,8 @@ const char* RecordVerdict::found() const {
 }
 
 RecordVerdict record_verdict(const VerdictEvidence& evidence) {
-  RecordVerdict verdict{.model = model_answer(evidence), .loop = loop_answer(evidence), .action = {}};
+  RecordVerdict verdict{.model = {}, .loop = loop_answer(evidence), .action = {}};
+  verdict.model = model_answer(evidence, verdict.loop.costs);
   verdict.has_trials = evidence.trials.has_value();
   verdict.controller_is_alike = evidence.controller_is_alike;
   verdict.action = action_on(evidence, verdict);

@@ -78,16 +78,17 @@ struct UnexplainedPart {
   bool is_noise = false;
 };
 
-/// What a CV costs its controller, by cv_costs().
+/// What a CV costs its controller, by cost_of_record().
 struct CvCost {
   Eigen::Index cv = 0;
   bool has_setpoint = true;          ///< no: a range
   double now = 0.0, designed = 0.0;  ///< mean squares, CV unit squared
   double ratio = 1.0;                ///< of them: 1 as designed
-  double threshold = kNaN;  ///< above which simulated records without a fault hardly ever are; NaN: unknown
+  /// Above which simulated records without a fault hardly ever are, at least 1: what costs less than designed
+  /// is no damage. NaN: unknown.
+  double threshold = kNaN;
 
-  /// One that costs less than designed is no damage.
-  bool is_dearer() const { return ratio > threshold && ratio > 1.0; }
+  bool is_dearer() const { return ratio > threshold; }
 };
 
 /// Samples of the record: the likeliest one from which on something is wrong, and its interval.

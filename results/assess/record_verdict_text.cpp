@@ -109,10 +109,25 @@ class VerdictWriter {
     const std::string who = study_.cv_count() == 1 ? cv(0) + " is"
                             : model.late_cv < 0    ? "all CVs are"
                                                    : cv(model.late_cv) + " is";
+    if (size == 0.0)
+      return "the clock of the record is off";
     if (size == kAverage)
       return fmt::format("{} measured {} {} than the rows say, as averages over a row are", who, by,
                          model.late < 0.0 ? "later" : "earlier");
     return fmt::format("{} {} too {} against all MVs", who, by, model.late < 0.0 ? "early" : "late");
+  }
+
+  /// "Most likely (84 %)"; where it is likelier that nothing is wrong, of the faults.
+  std::string sure() const {
+    const RecordVerdict::Model& model = verdict_.model;
+    if (!model.probabilities)
+      return "Likeliest";
+    const auto shares = permille(*model.probabilities);
+    const int share = shares[static_cast<std::size_t>(model.source)];
+    return fmt::format(
+        "{} ({})",
+        share == *std::max_element(shares.begin(), shares.end()) ? "Most likely" : "Likeliest of the faults",
+        whole_percent_text(share));
   }
 
   std::string model() const {
@@ -136,14 +151,8 @@ class VerdictWriter {
             fmt::format("The model does not explain {}: its noise is {:.2g} times that of the study.",
                         cv(part.cv), part.score));
     if (const Lines names = names_of(model.at, false); !names.empty()) {
-      const std::string sure =
-          model.probabilities
-              ? fmt::format("Most likely ({})",
-                            whole_percent_text(
-                                permille(*model.probabilities)[static_cast<std::size_t>(model.source)]))
-              : "Likeliest";
       sentences.push_back(
-          fmt::format("The model no longer explains {}{}. {}: {}.", joined(names), since(), sure, what()));
+          fmt::format("The model no longer explains {}{}. {}: {}.", joined(names), since(), sure(), what()));
     }
     sentences.insert(model.at.front().is_noise ? sentences.begin() : sentences.end(), noisy.begin(),
                      noisy.end());

@@ -15,7 +15,7 @@
 #include "analysis/records/channel_information.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/controller_check.hpp"
-#include "analysis/records/cv_costs.hpp"
+#include "analysis/records/cost_of_record.hpp"
 #include "analysis/records/model_check.hpp"
 #include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
@@ -420,7 +420,7 @@ TEST_CASE("the cost of a CV is its controller's: about a setpoint, or outside of
   const Eigen::MatrixXd noise = measurement_noise(study, 3);
   const Eigen::VectorXd v = noise.array().square().rowwise().mean();
   const auto ratio = [&](const Eigen::MatrixXd& y, Eigen::Index from) {
-    return cv_costs(study, y, y0, v, from);
+    return cost_of_record(study, y, y0, v, from);
   };
   const std::vector<CvCost> same = ratio(y0 + noise, 0);
   REQUIRE(std::ssize(same) == ny);

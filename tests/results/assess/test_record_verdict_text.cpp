@@ -181,13 +181,16 @@ void read_costs(const RecordVerdictText& text, Reading& reading) {
 }
 
 void read_probabilities(const RecordVerdictText& text, Reading& reading) {
-  double sum = 0.0;
+  double sum = 0.0, largest = 0.0;
   const auto parts = matches_of(text.probabilities, std::regex("([0-9.]+) %"));
   for (const std::smatch& part : parts) {
     const double share = std::stod(part[1]);
     reading.demand(share > 0.0 && share < 100.0, "certain: " + text.probabilities);
     sum += share;
+    largest = std::max(largest, share);
   }
+  if (std::smatch likely; std::regex_search(text.model, likely, std::regex("Most likely \\(([0-9]+) %")))
+    reading.demand(std::abs(std::stod(likely[1]) - largest) <= 0.5, "the most likely, and a likelier one");
   reading.demand(parts.empty() || (parts.size() == kRecordSources && std::abs(sum - 100.0) < 1e-9),
                  "probabilities that do not add up: " + text.probabilities);
   reading.demand(!std::regex_search(text.model, std::regex("\\((0|100) %\\)")), "certain: " + text.model);
