@@ -212,10 +212,16 @@ class VerdictWriter {
             "away {} of what the loop costs{}.",
             channel, promise_text(*action.promise), changes());
       case ActionKind::sensor:
-        return fmt::format(
-            "Look at the sensor of {}, and at the noise of the study "
-            "(simulation.noise_standard_deviation).",
-            cv(action.cv));
+        return verdict_.model.source == RecordSource::sensor && !verdict_.model.at.front().is_noise
+                   ? fmt::format(
+                         "Look at the sensor of {}: hold it against another measurement before anything is "
+                         "done about "
+                         "the model.",
+                         cv(action.cv))
+                   : fmt::format(
+                         "Look at the sensor of {}, and at the noise of the study "
+                         "(simulation.noise_standard_deviation).",
+                         cv(action.cv));
       case ActionKind::valve:
         return fmt::format(
             "Check the valve of {} and its positioner before the model: move it in small steps, and "
