@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "analysis/study_files/sweep_file.hpp"
-#include "bench/cache/cache_folder.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
@@ -63,23 +62,22 @@ ExitCode run_sweep(const SweepArguments& options, const std::string& command_lin
     return ExitCode::done;
   }
   require_archives(studies, folder, options.run, options.overwrite);
-  RunOptions cached = options.run;
-  cached.cache = user_cache();
   std::vector<SweepRow> rows;
   FailureTally failures;
-  run_series(studies, cached, progress, options.output, command_line, [&](std::size_t place, KeptRun run) {
-    SweepRow& row = rows.emplace_back(SweepRow{.choice = variants[place]->choice,
-                                               .value = variants[place]->value,
-                                               .healthy = true,
-                                               .trouble = std::move(run.trouble),
-                                               .findings = {}});
-    if (run.campaign) {
-      row.healthy = run.campaign->basis.healthy;
-      StudyFindings findings = findings_of(*run.campaign);
-      failures.add(findings);
-      row.findings = std::move(findings.rows);
-    }
-  });
+  run_series(studies, options.run, progress, options.output, command_line,
+             [&](std::size_t place, KeptRun run) {
+               SweepRow& row = rows.emplace_back(SweepRow{.choice = variants[place]->choice,
+                                                          .value = variants[place]->value,
+                                                          .healthy = true,
+                                                          .trouble = std::move(run.trouble),
+                                                          .findings = {}});
+               if (run.campaign) {
+                 row.healthy = run.campaign->basis.healthy;
+                 StudyFindings findings = findings_of(*run.campaign);
+                 failures.add(findings);
+                 row.findings = std::move(findings.rows);
+               }
+             });
   failures.tell(progress);
   if (part) {
     print_result(fmt::format("{}: {} of {} studies, part {} of {}\n", options.output, rows.size(),
@@ -112,7 +110,6 @@ void add_sweep(CommandSet& commands) {
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
   add_overwrite(app, options->overwrite);
-  add_fresh(app, options->run.fresh);
   add_dry_run(app, options->dry_run);
   add_json(app, options->json);
   add_quiet(app, options->quiet);

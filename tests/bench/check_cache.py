@@ -233,33 +233,6 @@ def check_compare(cached):
     cached.check_same("after compare", "without")
 
 
-def check_sweep(cached):
-    """A sweep into another folder takes up what its studies have left, and gives what it gives without a cache."""
-    (cached.folder / "swept.toml").write_text("""
-[sweep]
-name = "swept"
-title = "for a test"
-study = "wood-berry"
-[[variant]]
-choice = "samples"
-value = "200"
-set.simulation.samples = 200
-""")
-    times = {}
-    for output, cache, words in (("swept without", "off", []), ("swept", cached.cache, []), ("swept again", cached.cache, []),
-                                 ("swept fresh", cached.cache, ["--fresh"])):
-        subprocess.run(list(map(str, [cached.program, "sweep", cached.folder / "swept.toml", "-o", cached.folder / output,
-                                      "--experiments", 4, "--jobs", 1, *words])), check=True, timeout=PATIENCE,
-                       capture_output=True, env={**os.environ, "MPMBENCH_CACHE": str(cache)})
-        archives = sorted((cached.folder / output).glob("*.h5"))
-        assert archives, output
-        for archive in archives:
-            check_same(archive, cached.folder / "swept without" / archive.name)
-        with h5py.File(archives[0]) as file:
-            times[output] = [file[f"methods/{name}"].attrs["milliseconds"] for name in sorted(file["methods"])]
-    assert times["swept without"] != times["swept"] == times["swept again"] != times["swept fresh"], times
-
-
 def check_damage(cached):
     """A file that is cut off, damaged or of somebody else is as none, and is made again."""
     whole = cached.files().keys()
@@ -314,8 +287,8 @@ def check_at_once(cached):
 def main(program):
     with tempfile.TemporaryDirectory() as folder:
         cached = Cached(program, pathlib.Path(folder))
-        for check in (check_same_answers, check_changed_method, check_never_stale, check_compare, check_sweep, check_damage,
-                      check_folder, check_at_once):
+        for check in (check_same_answers, check_changed_method, check_never_stale, check_compare, check_damage, check_folder,
+                      check_at_once):
             check(cached)
             print(check.__name__, "done", flush=True)
 
