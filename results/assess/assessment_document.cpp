@@ -101,8 +101,9 @@ Figure worst_figure(const RecordAssessment& of) {
                   as_label(variable.name), of.model_error > 0.0 ? ", but for a constant" : "",
                   of.verdict.model.since ? "; shaded since something is wrong" : "");
   figure.legend = {{"measured", measured}, {"model", model}};
-  figure.panels.push_back(panel.finish(
-      fmt::format("{} as measured and as the model has it, over time.", variable.name), kHeight));
+  figure.panels.push_back(
+      panel.finish(fmt::format("{} as measured and as the model has it, over time.", variable.name), kHeight,
+                   2 * kPanelWidth));
   figure.columns = 1;
   return figure;
 }

@@ -58,7 +58,10 @@ std::string legend_html(const std::vector<LegendEntry>& legend) {
 
 std::string figure_html(const Figure& figure) {
   std::string html = fmt::format("<figure id=\"figure-{}\">\n{}<div class=\"panels{}\">\n", figure.name,
-                                 legend_html(figure.legend), figure.panels.size() == 1 ? " one" : "");
+                                 legend_html(figure.legend),
+                                 figure.panels.size() != 1                   ? ""
+                                 : figure.panels.front().width > kPanelWidth ? " one wide"
+                                                                             : " one");
   for (const std::string& panel : draw_panels(figure))
     html += panel;
   html += "</div>\n";

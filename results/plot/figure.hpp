@@ -47,18 +47,18 @@ struct LegendEntry {
   Pen pen;
 };
 
+inline constexpr double kPanelWidth = 420;  ///< pixels; text is 12 pixels high
+
 /// One plot: made by PanelScript, drawn by draw_panels() and draw_figure().
 struct Panel {
   std::string title;                                ///< label
   std::string description;                          ///< what it shows, for people who do not see it
-  double height = 300;                              ///< pixels, for a width of kPanelWidth
+  double height = 300, width = kPanelWidth;         ///< pixels; in a grid all are kPanelWidth wide
   std::string data;                                 ///< data blocks of gnuplot
   std::string commands;                             ///< the plot itself, in gnuplot's language
   std::map<std::string, std::string> names;         ///< of points, by their hypertext in `data`
   std::map<std::string, std::string> anchors = {};  ///< where points of a page lead, in the same way
 };
-
-inline constexpr double kPanelWidth = 420;  ///< pixels; text is 12 pixels high
 
 /// Panels that belong together. The page shows them one beside or below the other, as the screen allows; a
 /// file of its own has them in a grid.

@@ -172,7 +172,7 @@ std::vector<std::string> draw_panels(const Figure& figure) {
   std::string script;
   for (const Panel& panel : figure.panels)
     script +=
-        terminal(FigureFormat::svg, kPanelWidth, panel.height) + kHouseStyle + panel.data + panel.commands;
+        terminal(FigureFormat::svg, panel.width, panel.height) + kHouseStyle + panel.data + panel.commands;
   const std::string drawings = figure.panels.empty() ? "" : run_gnuplot(script);
   std::vector<std::string> panels;
   std::size_t begin = 0;

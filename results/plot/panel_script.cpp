@@ -205,18 +205,19 @@ void PanelScript::field(double x, double y, std::string_view colour, double dept
       plot_number(x), plot_number(y), colour, depth, gnuplot_label(label));
 }
 
-Panel PanelScript::finish(std::string description, double height) {
+Panel PanelScript::finish(std::string description, double height, double width) {
   constexpr double kAround = 80;  // pixels that labels and title take, about
   panel_.title = title_;
   panel_.description = std::move(description);
   panel_.height = height;
+  panel_.width = width;
   panel_.commands = fmt::format("set lmargin {}\n", left_margin(y_));
   if (title_.empty())
     panel_.commands += "set tmargin 0.7\n";
   else
     panel_.commands +=
         fmt::format("set label 1 {} at graph 0, graph 1 offset 0, 0.9 left front\n", gnuplot_label(title_));
-  panel_.commands += axis_commands('x', x_, x_extent_.least, x_extent_.largest, kPanelWidth - kAround) +
+  panel_.commands += axis_commands('x', x_, x_extent_.least, x_extent_.largest, width - kAround) +
                      axis_commands('y', y_, y_extent_.least, y_extent_.largest, height - kAround) + settings_;
   // Without anything to draw the axes alone stand there.
   panel_.commands +=

@@ -53,7 +53,7 @@ class PanelScript {
   /// The field of a heat map around (x, y), one wide and high, with a label; `depth` from 0 (white) to 1.
   void field(double x, double y, std::string_view colour, double depth, const std::string& label);
 
-  Panel finish(std::string description, double height = 300);
+  Panel finish(std::string description, double height = 300, double width = kPanelWidth);
 
  private:
   struct Extent {
