@@ -14,8 +14,8 @@
 #include "analysis/experiment/repair.hpp"
 #include "analysis/findings/monitored_loop.hpp"
 #include "analysis/findings/world_counts.hpp"
-#include "analysis/statistics/least_effect.hpp"
 #include "analysis/methods/source_probabilities.hpp"
+#include "analysis/statistics/least_effect.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {

@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kMostRecordedMoves = 10000;
 constexpr double kFirstTolerance = 0.01;  // of the standard deviation of an MD
 constexpr double kFewestMissing = 0.001;
-constexpr double kMostBackground = 0.75;      // standard deviations of the noise
+constexpr double kMostBackground = 0.75;     // standard deviations of the noise
 constexpr double kLongestBackground = 20.0;  // samples
 constexpr std::string_view kTrialTitle = "Calibration run: ";
 

@@ -34,8 +34,8 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
 struct TrialPlan {
   int healthy = 0, faulty = 0;
   /// Standard deviation of the errors of the model: of gain, time constants and dead time of every channel,
-  /// drawn anew for each loop, beside disturbances that never stop, of up to three quarters of the noise of a CV. 0:
-  /// the model is exact.
+  /// drawn anew for each loop, beside disturbances that never stop, of up to three quarters of the noise of a
+  /// CV. 0: the model is exact.
   double model_error = 0.0;
   std::string judged = {};  ///< how these loops are judged, for people and to know them again
 };

@@ -79,6 +79,7 @@ def main(program):
 
         check_step_model(run, folder)
         check_levels(run, folder)
+        check_proposed_benchmark(run, folder)
 
         # Nothing is overwritten, and what is wrong is said by option.
         assert "a file that is there" in run("init", study, *TANK, code=2).stderr and study.read_text() == text
@@ -232,8 +233,7 @@ def check_proposed_benchmark(run, folder):
                                     "--time-constants", 2).stdout
 
 
-def check_levels(run, folder)
-def check_proposed_benchmark(run, folder):
+def check_levels(run, folder):
     """Levels: a ramp of coefficients is a channel that integrates, the study runs, and identify finds it again."""
     model = folder / "levels.csv"
     model.write_text("time,level/inflow,level/outflow,pressure/inflow\n" + "".join(

@@ -24,7 +24,7 @@ COMPOSED = {"": ("study", "plant", "controller", "simulation", "record", "experi
             "s0_perturbation": ("multipliers", "cvs", "fixed_mvs", "fixed_active_cvs"),
             "diagnosis": ("windows",), "monitoring": ("window", "stride"), "calibration": ("seed",),
             "mismatch": ("channels", "plant_parameter", "dead_time_shift"), "disturbance": ("cvs",), "world": ("plant_parameter",), "onset": ("sample", "growth"),
-            "record.missing": ("share",), "assessment.badwe2009": ("min_lag",), "assessment.badwe2010": ("smallest_order",),
+            "record": ("shift",), "record.missing": ("share",), "record.bad": ("share",), "assessment.badwe2009": ("min_lag",), "assessment.badwe2010": ("smallest_order",),
             "controller": ("control_horizon", "move_blocks", "mv", "cv", "md", "program"), "simulation.md_noise": ("standard_deviation",)}
 # Of these every key is composed here, or belongs to another trial: FMUs, records of a plant, programs as controllers.
 COMPOSED_TABLES = ("plant", "controller.", "scenario", "study", "data", "reference", "methods", "DISTRIBUTION")
@@ -458,9 +458,16 @@ class Study:
         record = self.fill("record", p)
         if self.noise == 0.0:  # sizes are multiples of it
             record = {key: record[key] for key in record.keys() & {"missing", "candidates"}}
-        if "missing" in record:
-            length = record["missing"].get("length", 1)
-            record["missing"]["share"] = self.chance.uniform(0.01, 0.5) * length / (length + 1)
+        for gaps in record.keys() & {"missing", "bad"}:
+            length = record[gaps].get("length", 1)
+            record[gaps]["share"] = self.chance.uniform(0.01, 0.5) * length / (length + 1)
+        if self.is_program:  # it has no values between its samples
+            record.pop("sampling", None)
+        if self.any(p):
+            shifts = [-1, 1] if self.is_program else [-1.5, -0.5, 0.25, 1]
+            variables = [*self.cvs, *self.mvs, *self.mds]
+            record["shift"] = self.chance.choice([self.chance.choice(shifts), {
+                name: self.chance.choice(shifts) for name in self.chance.sample(variables, self.chance.randint(1, len(variables)))}])
         return record
 
     def scenarios(self):

@@ -8,7 +8,6 @@
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/variability_comparison.hpp"
-#include "analysis/methods/unfit_option.hpp"
 #include "analysis/statistics/best_candidate.hpp"
 #include "base/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -61,10 +60,6 @@ class YuQin final : public AssessmentMethod {
   YuQin(const YuQinOptions& options, const AssessmentContext& context)
       : options_(options.comparison), first_(options.first_sample), benchmark_(*context.benchmark) {
     options_.validate();
-    if (first_ + 2 > benchmark_.samples())
-      throw UnfitOption("assessment.yu-qin.first_sample", fmt::format("{}", first_),
-                        fmt::format("{} or less: the benchmark has {} samples", benchmark_.samples() - 2,
-                                    benchmark_.samples()));
   }
 
   Assessment assess(const AssessedLoop& loop) override {
@@ -73,6 +68,8 @@ class YuQin final : public AssessmentMethod {
       return Assessment::not_applicable("no CV has a setpoint in this loop and in the benchmark period");
     if (first_ + 2 > loop.samples())
       return Assessment::not_applicable("the record ends before the first sample to be compared");
+    if (first_ + 2 > benchmark_.samples())
+      return Assessment::not_applicable("the benchmark ends before the first sample to be compared");
     const VariabilityComparison found = compare_variability(control_errors(benchmark_, cvs, first_),
                                                             control_errors(loop, cvs, first_), options_);
     if (found.status == VariabilityStatus::singular_benchmark)
