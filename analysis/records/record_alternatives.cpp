@@ -369,18 +369,18 @@ class Comparison {
   void valve(RecordAlternatives& found) {
     constexpr double kBands[] = {0.02, 0.04, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4};
     constexpr double kCloser[] = {0.84, 0.92, 1.08, 1.18};
-    constexpr double kJumps[] = {0.0, 0.3, 0.6, 1.0};
+    constexpr double kTriedJumps[] = {0.0, 0.3, 0.6, 1.0};
     found.valve = -kInfinity;
     for (Eigen::Index mv = 0; mv < study_.mv_count(); ++mv) {
       const Eigen::RowVectorXd u = loop_.u.row(mv);
       const double range = u.maxCoeff() - u.minCoeff();
       if (!(range > 0.0))
         continue;
-      using Valve = std::function<Eigen::RowVectorXd(double)>;
-      std::vector<Valve> valves{[&u](double band) { return staying_valve(u, band, u(0)); }};
-      for (const double jump : kJumps)
+      using ValveModel = std::function<Eigen::RowVectorXd(double)>;
+      std::vector<ValveModel> valves{[&u](double band) { return staying_valve(u, band, u(0)); }};
+      for (const double jump : kTriedJumps)
         valves.emplace_back([&u, jump](double band) { return sticky_valve(u, band, jump); });
-      for (const Valve& valve : valves) {
+      for (const ValveModel& valve : valves) {
         double best = -kInfinity, band = 0.0;
         const auto take = [&](double size) {
           if (const double here = of_valve(mv, valve(size)); here > best) {

@@ -236,7 +236,7 @@ void tell_unjudged(RecordAssessment& assessment) {
 /// How the record is judged: its study, the nominal loop, and what of it nobody knows.
 std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study& study,
                                       const QpSolverFactory& factory, RecordAssessment& assessment) {
-  const auto frame = std::make_shared<RecordFrame>();
+  auto frame = std::make_shared<RecordFrame>();
   frame->methods = options.methods;
   frame->methods.emplace_back(kModelCheck);
   const auto study_with = [&](GapFill gaps) {

@@ -146,16 +146,16 @@ OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& 
   all[RecordSource::data] = kPrior * share(alternatives.data);
   OfSources told = weights;
   double sum = 0.0;
-  constexpr RecordSource kUsual[] = {RecordSource::mismatch, RecordSource::disturbance, RecordSource::both,
-                                     RecordSource::unknown};
-  for (const RecordSource source : kUsual)
+  constexpr RecordSource kUsualSources[] = {RecordSource::mismatch, RecordSource::disturbance,
+                                            RecordSource::both, RecordSource::unknown};
+  for (const RecordSource source : kUsualSources)
     sum += told[source];
   if (!(sum > 0.0)) {
     sum = 1.0;
     told[alternatives.mismatch > alternatives.disturbance ? RecordSource::mismatch
                                                           : RecordSource::disturbance] = 1.0;
   }
-  for (const RecordSource source : kUsual)
+  for (const RecordSource source : kUsualSources)
     all[source] = share(usual) * told[source] / sum;
   const auto best =
       static_cast<std::size_t>(std::max_element(all.each.begin(), all.each.end()) - all.each.begin());

@@ -76,8 +76,8 @@ class VerdictWriter {
   std::string what() const {
     const RecordVerdict::Model& model = verdict_.model;
     const std::string at = cv(model.at.front().cv);
-    const std::string mismatch = model.mismatch ? mismatch_sentence(study_, *model.mismatch)
-                                                : fmt::format("a channel of {} is not that of the model", at);
+    std::string mismatch = model.mismatch ? mismatch_sentence(study_, *model.mismatch)
+                                          : fmt::format("a channel of {} is not that of the model", at);
     switch (model.source) {
       case RecordSource::mismatch:
         return mismatch;
