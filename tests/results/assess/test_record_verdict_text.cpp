@@ -15,6 +15,7 @@
 #include "base/non_finite.hpp"
 #include "results/assess/record_verdict_text.hpp"
 #include "scenarios/random/random_stream.hpp"
+#include "tests/base/thorough.hpp"
 
 // Whatever the evidence, the sentences of a verdict do not contradict each other. They are judged as a reader
 // judges them: by their words and numbers, without the verdict behind them.
@@ -238,7 +239,8 @@ TEST_CASE("record verdict: no sentence contradicts another, whatever the evidenc
   const std::vector<std::string> cvs{"xD", "xB"};
   EvidenceDraw evidence(66, study.cv_count(), study.mv_count());
   std::map<std::string, int> said;
-  for (int draw = 0; draw < 20000; ++draw) {
+  const int draws = testing::is_thorough() ? 50'000 : 5000;
+  for (int draw = 0; draw < draws; ++draw) {
     const RecordVerdict verdict = record_verdict(evidence.draw());
     const RecordVerdictText text = record_verdict_text(verdict, study, stamps);
     const Reading reading = reading_of(text, cvs);
