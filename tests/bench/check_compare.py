@@ -216,11 +216,11 @@ samples = 140
 noise_standard_deviation = {xD = 0.01, xB = 0.01}
 step = [{cv = "xD", sample = 20, level = 0.5}, {md = "F", sample = 60, level = 0.4}]
 """ + text[text.index("[experiments]"):]  # as Ipopt takes its time
-    study.write_text(short + "\n[assessment.yu-qin]\nfirst_sample = 900000\n", encoding="utf-8")
+    study.write_text(short + "\n[assessment.sun]\nnoise = \"benchmark\"\nnoise_order = 100\n", encoding="utf-8")
     compare.run("run", study, "-o", archive, "--experiments", 2, "--solver", "ipopt", "--quiet")
     for jobs in (1, 2):
-        message = compare.run("compare", archive, "--methods", "yu-qin", "--jobs", jobs, "--quiet", code=2)
-        assert "assessment.yu-qin.first_sample: found 900000" in message, message
+        message = compare.run("compare", archive, "--methods", "sun", "--jobs", jobs, "--quiet", code=2)
+        assert "assessment.sun.noise_order: found 100" in message, message
 
 
 def main(program):
