@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/sensitivity/active_limit.hpp"
+#include "base/enum_words.hpp"
 #include "scenarios/loop/off_schedule.hpp"
 #include "scenarios/loop/signals.hpp"
 
@@ -46,17 +47,9 @@ double share_of(Eigen::Index samples, const Indices& variables, const Reached& r
 }  // namespace
 
 std::string_view title_of(NonlinearCause cause) {
-  switch (cause) {
-    case NonlinearCause::none:
-      return "none of these";
-    case NonlinearCause::unstable:
-      return "unstable loop";
-    case NonlinearCause::other_cv_active:
-      return "another CV at a limit";
-    case NonlinearCause::mv_at_limit:
-      return "an MV at a limit";
-  }
-  return "unknown";
+  constexpr auto kTitles =
+      word_list("none of these", "unstable loop", "another CV at a limit", "an MV at a limit");
+  return kTitles.at(static_cast<std::size_t>(cause));
 }
 
 bool has_cause(const LoopConditions& conditions, NonlinearCause cause) {

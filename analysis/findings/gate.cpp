@@ -19,18 +19,6 @@ GateDoubt doubt_about(const Gate& gate, const Finding& measured) {
 
 }  // namespace
 
-std::string_view to_string(GateOutcome outcome) {
-  switch (outcome) {
-    case GateOutcome::pass:
-      return "pass";
-    case GateOutcome::fail:
-      return "fail";
-    case GateOutcome::inconclusive:
-      return "inconclusive";
-  }
-  return "unknown";
-}
-
 GateResult judge(const Gate& gate, const Finding& measured) {
   GateResult result{gate, measured};
   result.doubt = doubt_about(gate, measured);

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "analysis/findings/finding.hpp"
+#include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -22,7 +23,8 @@ struct Gate {
 /// Whether the claim was shown to hold, shown not to hold, or neither.
 enum class GateOutcome : std::int8_t { pass, fail, inconclusive };
 
-std::string_view to_string(GateOutcome outcome);
+template <>
+inline constexpr auto kWords<GateOutcome> = word_list("pass", "fail", "inconclusive");
 
 /// Why a gate is inconclusive.
 enum class GateDoubt : std::int8_t {

@@ -1,7 +1,5 @@
 #include "results/plot/figure_format.hpp"
 
-#include <array>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -10,21 +8,9 @@
 namespace mpm {
 namespace {
 
-constexpr std::array<FigureFormat, 3> kFormats{FigureFormat::svg, FigureFormat::pdf, FigureFormat::png};
+constexpr auto kFormats = enumerators<FigureFormat>();
 
 }  // namespace
-
-std::string_view to_string(FigureFormat format) {
-  switch (format) {
-    case FigureFormat::svg:
-      return "svg";
-    case FigureFormat::pdf:
-      return "pdf";
-    case FigureFormat::png:
-      return "png";
-  }
-  return "unknown";
-}
 
 const std::vector<std::string>& figure_format_names() {
   static const std::vector<std::string> names = [] {

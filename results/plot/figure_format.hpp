@@ -5,12 +5,15 @@
 #include <string_view>
 #include <vector>
 
+#include "base/enum_words.hpp"
+
 namespace mpm {
 
 /// The formats in which a figure can be written.
 enum class FigureFormat { svg, pdf, png };
 
-std::string_view to_string(FigureFormat format);
+template <>
+inline constexpr auto kWords<FigureFormat> = word_list("svg", "pdf", "png");
 
 /// Their names, for help texts and messages.
 const std::vector<std::string>& figure_format_names();

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/enum_words.hpp"
 #include "results/archive/variable_text.hpp"
 
 namespace mpm {
@@ -184,19 +185,8 @@ std::string kind_name(ExperimentKind kind) {
 }
 
 std::string source_name(FaultSource source) {
-  switch (source) {
-    case FaultSource::none:
-      return "none";
-    case FaultSource::mpm:
-      return "MPM";
-    case FaultSource::ud:
-      return "UD";
-    case FaultSource::mpm_ud:
-      return "MPM+UD";
-    case FaultSource::other:
-      return "other";
-  }
-  return "unknown";
+  constexpr auto kNames = word_list("none", "MPM", "UD", "MPM+UD", "other");
+  return std::string(kNames.at(static_cast<std::size_t>(source)));
 }
 
 std::string cv_name(const Study& study, Eigen::Index cv) {

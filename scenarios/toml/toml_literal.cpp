@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "base/enum_words.hpp"
+
 namespace mpm {
 namespace {
 
@@ -31,17 +33,8 @@ std::string list_of(const Values& values) {
 }
 
 std::string_view kind_name(Distribution::Kind kind) {
-  switch (kind) {
-    case Distribution::Kind::constant:
-      return "constant";
-    case Distribution::Kind::uniform:
-      return "uniform";
-    case Distribution::Kind::log_uniform:
-      return "log_uniform";
-    case Distribution::Kind::normal:
-      return "normal";
-  }
-  return {};
+  constexpr auto kNames = word_list("constant", "uniform", "log_uniform", "normal");
+  return kNames.at(static_cast<std::size_t>(kind));
 }
 
 }  // namespace
