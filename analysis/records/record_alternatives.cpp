@@ -15,7 +15,7 @@
 #include "base/non_finite.hpp"
 #include "plants/linear/zero_order_hold.hpp"
 #include "scenarios/faults/fault.hpp"
-#include "scenarios/faults/other_fault.hpp"
+#include "scenarios/faults/valve_stem.hpp"
 
 namespace mpm {
 namespace {
@@ -153,20 +153,8 @@ Columns moves_of(const Study& study, const AssessedLoop& loop, Eigen::Index cv) 
   return columns;
 }
 
-/// A valve that stays until the signal is more than d away, and then goes where it is.
-Eigen::RowVectorXd staying_valve(const Eigen::RowVectorXd& u, double d, double start) {
-  Eigen::RowVectorXd x(u.size());
-  double position = start;
-  for (Eigen::Index k = 0; k < u.size(); ++k) {
-    if (std::abs(u(k) - position) > d)
-      position = u(k);
-    x(k) = position;
-  }
-  return x;
-}
-
-Eigen::RowVectorXd sticky_valve(const Eigen::RowVectorXd& u, double stickband, double jump) {
-  StickyValve stem(stickband, jump * stickband, u(0));
+/// Where a valve stands whose signal is u.
+Eigen::RowVectorXd positions(ValveStem&& stem, const Eigen::RowVectorXd& u) {
   Eigen::RowVectorXd x(u.size());
   for (Eigen::Index k = 0; k < u.size(); ++k)
     x(k) = stem.follow(u(k));
@@ -377,9 +365,11 @@ class Comparison {
       if (!(range > 0.0))
         continue;
       using ValveModel = std::function<Eigen::RowVectorXd(double)>;
-      std::vector<ValveModel> valves{[&u](double band) { return staying_valve(u, band, u(0)); }};
+      std::vector<ValveModel> valves{
+          [&u](double band) { return positions(FrictionValve(band, 0.0, u(0)), u); }};
       for (const double jump : kTriedJumps)
-        valves.emplace_back([&u, jump](double band) { return sticky_valve(u, band, jump); });
+        valves.emplace_back(
+            [&u, jump](double band) { return positions(StickyValve(band, jump * band, u(0)), u); });
       for (const ValveModel& valve : valves) {
         double best = -kInfinity, band = 0.0;
         const auto take = [&](double size) {

@@ -26,8 +26,8 @@ namespace mpm {
 /// | mismatch    | of one channel of each CV: another gain, time constant or dead time, from the onset on   |
 /// | data        | y is s samples late against the inputs, in one CV or in all: y_sim(k) - y_sim(k - s)     |
 /// | sensor      | a ramp in y of one CV from some sample on                                                |
-/// | valve       | of one MV: the responses to x - u, x of StickyValve, or of a valve that stays until      |
-/// |             | abs(u - x) > d and then goes to u (Stenman, Gustafsson and Forsman 2003)                 |
+/// | valve       | of one MV: the responses to x - u, x of a StickyValve, or of a FrictionValve without     |
+/// |             | kinetic friction                                                                         |
 struct RecordAlternatives {
   double disturbance = 0.0, mismatch = 0.0, data = 0.0, sensor = 0.0, valve = 0.0;  ///< L
   Eigen::Index data_cv = -1;                                                        ///< -1: all CVs
