@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
+#include <iterator>
 #include <vector>
 
 #include "analysis/experiment/repaired_model.hpp"
@@ -15,27 +17,38 @@ namespace {
 /// A gain is one beyond chance when it is above so many of its standard errors.
 constexpr double kErrors = 2.0;
 
-/// The costs of the loops of one experiment under a model, loop by loop; empty when one does not run to its
-/// end.
+/// The costs of the loops of one experiment under a model, loop by loop.
 class RepairLoops {
  public:
   RepairLoops(const Study& study, int loops, const QpSolverFactory& factory, SolverStatistics& pilots)
       : study_(study), loops_(loops), factory_(factory), pilots_(pilots) {}
 
-  std::vector<double> costs(const TransferMatrix& model, const ExperimentDraw& draw,
-                            const std::vector<double>& known = {}) const {
-    if (const auto n = static_cast<std::size_t>(loops_); known.size() >= n)
-      return {known.begin(), known.begin() + loops_};
-    std::vector<double> costs;
-    for (int loop = 0; loop < loops_; ++loop) {
+  int count() const { return loops_; }
+
+  /// Runs those that `costs` lacks of the first `count`; empties it when one does not run to its end.
+  void run(std::vector<double>& costs, int count, const TransferMatrix& model,
+           const ExperimentDraw& draw) const {
+    for (int loop = static_cast<int>(costs.size()); loop < count; ++loop) {
       ExperimentDraw noisy = draw;
       noisy.noise_index = pilot_noise(study_, draw, loops_, loop);
       const Trajectory run = loop_with_model(study_, model, noisy, factory_);
       pilots_.add(run.solver);
-      if (run.status != ControlStatus::ok)
-        return {};
+      if (run.status != ControlStatus::ok) {
+        costs.clear();
+        return;
+      }
       costs.push_back(loop_cost(study_, run).total());
     }
+  }
+
+  /// Of all loops; `known` are those that have been run, all or none.
+  std::vector<double> costs(const TransferMatrix& model, const ExperimentDraw& draw,
+                            const std::vector<double>& known) const {
+    const auto n = static_cast<std::ptrdiff_t>(loops_);
+    std::vector<double> costs;
+    if (std::ssize(known) >= n)
+      costs.assign(known.begin(), known.begin() + n);
+    run(costs, loops_, model, draw);
     return costs;
   }
 
@@ -46,15 +59,49 @@ class RepairLoops {
   SolverStatistics& pilots_;
 };
 
-/// Of the repair after which the loops cost `after`.
+/// A channel, and the loops under a model in which it is right.
+struct Repair {
+  Channel channel;
+  TransferMatrix model;
+  std::vector<double> costs = {};
+};
+
+/// Of the repair after which the first loops cost `after`.
 RatioOfMeans gain_of(const std::vector<double>& now, const std::vector<double>& after,
                      const std::vector<double>& without) {
   if (after.empty())
     return {kNaN, kNaN};
   std::vector<double> saved;
-  for (std::size_t loop = 0; loop < now.size(); ++loop)
+  for (std::size_t loop = 0; loop < after.size(); ++loop)
     saved.push_back(now[loop] - after[loop]);
-  return ratio_of_means(saved, without);
+  return ratio_of_means(saved, {without.begin(), without.begin() + std::ssize(after)});
+}
+
+/// Of every channel in which the plant differs from the model.
+std::vector<Repair> repairs_of(const TransferMatrix& model, const TransferMatrix& plant) {
+  std::vector<Repair> repairs;
+  for (Eigen::Index cv = 0; cv < plant.rows(); ++cv)
+    for (Eigen::Index input = 0; input < plant.cols(); ++input)
+      if (plant(cv, input) != model(cv, input)) {
+        repairs.push_back({{cv, input}, model});
+        repairs.back().model(cv, input) = plant(cv, input);
+      }
+  return repairs;
+}
+
+/// Runs the first loop of each, and the others of those that bring at least `screen` times the most in it.
+void run_repairs(std::vector<Repair>& repairs, const RepairLoops& runs, const ExperimentDraw& draw,
+                 double screen, const std::function<double(const Repair&)>& gain) {
+  double most = -kInfinity;
+  for (Repair& repair : repairs) {
+    runs.run(repair.costs, 1, repair.model, draw);
+    if (!repair.costs.empty())
+      most = std::max(most, gain(repair));
+  }
+  const double least = screen == 0.0 ? -kInfinity : std::min(most, screen * most);
+  for (Repair& repair : repairs)
+    if (!repair.costs.empty() && gain(repair) >= least)
+      runs.run(repair.costs, runs.count(), repair.model, draw);
 }
 
 }  // namespace
@@ -87,18 +134,16 @@ RepairGains repair_gains(const Study& study, const ExperimentDraw& draw, int loo
   if (now.empty() || without.empty())
     return {};
   const TransferMatrix plant = true_plant(moved, draw);
+  std::vector<Repair> repairs = repairs_of(moved.plant.G, plant);
+  run_repairs(repairs, runs, draw, moved.world ? moved.world->repair_screen : 0.0,
+              [&](const Repair& repair) { return gain_of(now, repair.costs, without).value; });
   RepairGains gains{Eigen::MatrixXd::Zero(plant.rows(), plant.cols()),
                     Eigen::MatrixXd::Zero(plant.rows(), plant.cols())};
-  for (Eigen::Index cv = 0; cv < plant.rows(); ++cv)
-    for (Eigen::Index input = 0; input < plant.cols(); ++input) {
-      if (plant(cv, input) == moved.plant.G(cv, input))
-        continue;
-      TransferMatrix repaired = moved.plant.G;
-      repaired(cv, input) = plant(cv, input);
-      const RatioOfMeans gain = gain_of(now, runs.costs(repaired, draw), without);
-      gains.gain(cv, input) = gain.value;
-      gains.error(cv, input) = gain.error;
-    }
+  for (const Repair& repair : repairs) {
+    const RatioOfMeans gain = gain_of(now, repair.costs, without);
+    gains.gain(repair.channel.cv, repair.channel.mv) = gain.value;
+    gains.error(repair.channel.cv, repair.channel.mv) = gain.error;
+  }
   return gains;
 }
 

@@ -30,7 +30,8 @@ namespace mpm {
 /// | gain   | ny x (nu + nd) | 0: plant and model agree; NaN: the repaired loop does not run to its end   |
 /// | error  | ny x (nu + nd) | its standard error (ratio_of_means()); NaN of a single loop                |
 ///
-/// Both are empty, or NaN out of an archive, where nothing was computed.
+/// Both are empty, or NaN out of an archive, where nothing was computed. With WorldRanges::repair_screen s
+/// the channels whose gain in the first loop is below s times the largest one have that loop alone.
 struct RepairGains {
   Eigen::MatrixXd gain, error;
 

@@ -170,6 +170,12 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
       key::whole("repair_loops", ranges.repair_loops, 0, kMostCostLoops,
                  "loops over whose noise the gain of repairing a channel is averaged, each run once for "
                  "every channel that differs from the model; 0: `repair_gain` is not computed"),
+      key::number(
+          "repair_screen", ranges.repair_screen, NumberRule::share(),
+          "share of the largest gain in the first of these loops: a channel whose repair brings less in "
+          "it is not run in the others, and its gain has no error; 0: every channel is run in all of "
+          "them",
+          "1"),
       key::list<WorldParameter>(
           "plant_parameter", kMostParameters,
           [&study](WorldParameter& parameter) { return parameter_keys(parameter, study); }, take,

@@ -56,6 +56,8 @@ struct WorldRanges {
   int cost_loops = 8;  ///< pairs of loops over whose noise the cost of a fault is an expectation
   /// Loops over whose noise the gain of repairing a channel is an expectation; 0: it is not computed.
   int repair_loops = 4;
+  /// Share of the largest gain below which the first of these loops is the only one of a channel; 0: all run.
+  double repair_screen = 0.0;
 
   bool operator==(const WorldRanges&) const = default;
 };

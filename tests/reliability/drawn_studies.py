@@ -439,7 +439,7 @@ class Study:
 
     def world(self, p):
         world = self.fill("world", p, count=self.chance.randint(1, 3), cost_loops=self.chance.randint(1, 2),
-                          repair_loops=self.chance.randint(0, 1))
+                          repair_loops=self.chance.randint(0, 2))
         if self.is_program:  # it has a parameter in place of channels
             return {key: world[key] for key in ("count", "cost_loops", "repair_loops", "noise_factor") if key in world} | {
                 "plant_parameter": [self.parameter()]}

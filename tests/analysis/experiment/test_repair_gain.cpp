@@ -94,6 +94,27 @@ TEST_CASE(
   CHECK(pilots.steps == 2 * kRepairLoops * study.simulation.samples);
 }
 
+TEST_CASE("repair gain: channels that bring little in the first loop are screened out", "[repair_gain]") {
+  Study study = exact_world();
+  ExperimentDraw draw = fault_of_gain(study, 0.4);
+  draw.mismatches.push_back({0, 1, MismatchParameter::gain, 1.02});  // next to nothing
+  draw.mismatches.push_back({2, 2, MismatchParameter::gain, 0.5});
+  SolverStatistics whole, screened;
+  const RepairGains all = repair_gains(study, draw, kRepairLoops, testing::kFactory, whole);
+  REQUIRE(all.gain(0, 1) < 0.5 * all.gain(1, 0));
+  study.world->repair_screen = 0.5;
+  const RepairGains some = repair_gains(study, draw, kRepairLoops, testing::kFactory, screened);
+  CHECK(some.gain(1, 0) == all.gain(1, 0));
+  CHECK(some.error(1, 0) == all.error(1, 0));
+  CHECK(some.best() == all.best());
+  CHECK(std::isnan(some.error(0, 1)));
+  CHECK(std::abs(some.gain(0, 1) - all.gain(0, 1)) < 0.05);
+  CHECK(whole.steps == 5 * kRepairLoops * study.simulation.samples);
+  const bool second_stays = !std::isnan(some.error(2, 2));
+  CHECK(screened.steps ==
+        whole.steps - (second_stays ? 1 : 2) * (kRepairLoops - 1) * study.simulation.samples);
+}
+
 TEST_CASE("repair gain: that of a measured disturbance is that of the feed-forward that knows it",
           "[repair_gain]") {
   const Study study = exact_world();
