@@ -272,6 +272,15 @@ AssessedLoop ExperimentRunner::loop_of(const ExperimentRecord& record) {
   return finished_again(record).assessed;
 }
 
+AssessedLoop ExperimentRunner::benchmark_of(const ExperimentRecord& record) const {
+  ExperimentDraw draw = basis_draw(record.draw.world);
+  draw.index = own_benchmark_index(record.draw.index);
+  Trajectory loop = simulate_experiment(study_, draw, factory_);
+  if (loop.status != ControlStatus::ok)
+    return {};
+  return assessed_loop(study_, basis_.point, recorded(study_, draw.index, std::move(loop)));
+}
+
 std::vector<AssessmentRecord> ExperimentRunner::assess(const ExperimentRecord& record) {
   return assess(record, methods_);
 }

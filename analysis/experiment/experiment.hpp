@@ -54,6 +54,10 @@ class ExperimentRunner {
   /// The loop of such an experiment as the methods see it. An experiment whose controller has no S0 of its
   /// own has none: only y_sim.
   AssessedLoop loop_of(const ExperimentRecord& record);
+  /// Another record of the plant of such an experiment, in which nothing is wrong, as the methods see it: the
+  /// world is the same, and excitation, noise and historian are its own (own_benchmark_index()). No sample
+  /// where it does not run to its end.
+  AssessedLoop benchmark_of(const ExperimentRecord& record) const;
   /// Does assess() run loops of this experiment: one that was not kept, those that give another S0, or for
   /// the chain those with one of two faults alone?
   bool runs_loops(const ExperimentRecord& record) const;

@@ -250,10 +250,14 @@ void run_blind_loops(const Campaign& campaign, const std::vector<BlindLoop>& ord
     const BlindLoop& loop = order[static_cast<std::size_t>(number)];
     return LoopPlace{loop.index, loop.of_calibration};
   };
-  const auto make = [](std::int64_t, ExperimentRunner& runner, const ExperimentRecord& record) {
-    const AssessedLoop loop = record.status == ExperimentStatus::ok ? runner.loop_of(record) : AssessedLoop();
+  const auto make = [has_own_benchmark = campaign.study.world.has_value()](
+                        std::int64_t, ExperimentRunner& runner, const ExperimentRecord& record) {
+    const bool ran = record.status == ExperimentStatus::ok;
+    const AssessedLoop loop = ran ? runner.loop_of(record) : AssessedLoop(),
+                       benchmark = ran && has_own_benchmark ? runner.benchmark_of(record) : AssessedLoop();
     ByteWriter writer;
     transfer_loop(writer, loop);
+    transfer_loop(writer, benchmark);
     return LoopResult{.bytes = writer.take()};
   };
   const auto lost = [&](std::int64_t number, const ExperimentRecord& record,
@@ -274,15 +278,29 @@ void run_blind_loops(const Campaign& campaign, const std::vector<BlindLoop>& ord
                 jobs, hooks);
 }
 
-BlindLoops blind_loops_in(const ShardStore& store, std::size_t count) {
-  return {count, [&store, count]() -> BlindLoops::Next {
-            return [next = store.in_order(0, static_cast<std::int64_t>(count))] {
+namespace {
+
+/// The loops that stand in this place of each result.
+BlindLoops loops_at(int place, const ShardStore& store, std::size_t count) {
+  return {count, [place, &store, count]() -> BlindLoops::Next {
+            return [place, next = store.in_order(0, static_cast<std::int64_t>(count))] {
               ByteReader reader(next()->bytes);
               AssessedLoop loop;
-              transfer_loop(reader, loop);
+              for (int at = 0; at <= place; ++at)
+                transfer_loop(reader, loop);
               return loop;
             };
           }};
+}
+
+}  // namespace
+
+BlindLoops blind_loops_in(const ShardStore& store, std::size_t count) {
+  return loops_at(0, store, count);
+}
+
+BlindLoops blind_benchmarks_in(const ShardStore& store, std::size_t count) {
+  return loops_at(1, store, count);
 }
 
 void add_verdicts(Campaign& campaign, OutsideVerdicts verdicts, const std::string& command) {

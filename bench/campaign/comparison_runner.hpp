@@ -87,12 +87,15 @@ class Comparison {
 
 /// Keeps these loops, as methods see them, in the store: key `number` for the loop in that place of `order`.
 /// Loops are run again where they were not kept. Without samples: a calibration loop that does not run to its
-/// end.
+/// end. In worlds each loop gets a benchmark of its own (ExperimentRunner::benchmark_of()): one for all loops
+/// of a world would tell which of them belong together, and by their number which calibrate thresholds.
 void run_blind_loops(const Campaign& campaign, const std::vector<BlindLoop>& order, int jobs,
                      const CampaignHooks& hooks, ShardStore& store);
 
 /// Those loops again, in the order of their numbers, each there until the next one is read.
 BlindLoops blind_loops_in(const ShardStore& store, std::size_t count);
+/// Their benchmarks in worlds, likewise.
+BlindLoops blind_benchmarks_in(const ShardStore& store, std::size_t count);
 
 /// Puts verdicts from outside behind the answers of the methods that the campaign has, in the place of those
 /// of the same name.

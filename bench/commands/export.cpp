@@ -51,10 +51,6 @@ ExitCode export_blind(const ExportArguments& options) {
     throw InputError("--calibration", "a study without a table `calibration`", "a study with one");
   if (options.parts.windows && !campaign.study.monitoring)
     throw InputError("--windows", "a study without a table `monitoring`", "a study with one");
-  if (campaign.study.world || campaign.study.simulation.excitation == SignalSequence::each)
-    throw InputError("--blind", "a study with worlds, or with an excitation of its own for each loop",
-                     "one whose loops share a benchmark, since a blind export has only one; a program "
-                     "(--method-file) gets the benchmark of each loop");
   const std::vector<BlindLoop> order = blind_order(campaign, options.parts.calibration);
   if (order.empty())
     throw InputError(options.archive, "no loop that ran to its end", "one or more to export");
@@ -76,9 +72,15 @@ ExitCode export_blind(const ExportArguments& options) {
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error) + "; run the same command again to resume");
   }
-  const AssessmentContext context =
+  AssessmentContext context =
       assessment_context(campaign.study, campaign.basis, qp_solver_factory(campaign.info.solver));
-  write_blind_loops(options.output, campaign, context, blind_loops_in(*loops, order.size()), options.parts);
+  std::optional<BlindLoops> benchmarks;
+  if (campaign.study.world) {
+    context.benchmark.reset();
+    benchmarks = blind_benchmarks_in(*loops, order.size());
+  }
+  write_blind_loops(options.output, campaign, context,
+                    {blind_loops_in(*loops, order.size()), std::move(benchmarks)}, options.parts);
   loops.reset();
   remove_shard_folder(shards);
   if (!options.key.empty())

@@ -148,19 +148,24 @@ void write_dimensions(Hdf5Group& group, const Study& study) {
   write_sample_dimension(group, "sample", "sample number", "time", study, 0, study.simulation.samples);
 }
 
+void write_loop_dimension(Hdf5Group& group, std::size_t count) {
+  std::vector<std::int32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0);
+  group.write_dimension("loop", numbers,
+                        attributes<std::int32_t>({"loop", "number of the loop in this export"}));
+}
+
 /// `name` is for messages.
 void write_blind_netcdf(const std::filesystem::path& path, const std::string& name, const Study& study,
-                        const AssessmentContext& context, const BlindLoops& loops, const std::string& hash) {
+                        const AssessmentContext& context, const BlindRecords& records,
+                        const std::string& hash) {
   const Hdf5File file = Hdf5File::create_at(path, name);
   Hdf5Group root = file.root();
   root.write_attribute("filetype", kBlindFileType);
   root.write_attribute("Conventions", "CF-1.8");
   root.write_attribute("title", fmt::format("Loops of {} without the truth", study.plant.name));
   root.write_attribute("loops_sha256", hash);
-  std::vector<std::int32_t> numbers(loops.count);
-  std::iota(numbers.begin(), numbers.end(), 0);
-  root.write_dimension("loop", numbers,
-                       attributes<std::int32_t>({"loop", "number of the loop in this export"}));
+  write_loop_dimension(root, records.loops.count);
   write_dimensions(root, study);
   if (study.record.candidates > 0) {
     std::vector<std::int32_t> candidates(static_cast<std::size_t>(study.record.candidates));
@@ -168,12 +173,19 @@ void write_blind_netcdf(const std::filesystem::path& path, const std::string& na
     root.write_dimension("candidate", candidates,
                          attributes<std::int32_t>({"candidate", "number of the logged signal"}));
   }
-  write_loops(root, study, loops);
-  if (context.benchmark) {
+  write_loops(root, study, records.loops);
+  if (records.benchmarks || context.benchmark) {
     Hdf5Group group = root.create_group("benchmark");
-    group.write_attribute("title", "A period in which nothing was wrong");
+    group.write_attribute("title", records.benchmarks
+                                       ? "Of the plant of each loop, a period in which nothing was wrong"
+                                       : "A period in which nothing was wrong");
+    if (records.benchmarks)
+      write_loop_dimension(group, records.benchmarks->count);
     write_dimensions(group, study);
-    write_benchmark(group, study, *context.benchmark);
+    if (records.benchmarks)
+      write_loops(group, study, *records.benchmarks);
+    else
+      write_benchmark(group, study, *context.benchmark);
   }
   file.finish();
 }
@@ -245,11 +257,12 @@ std::string blind_key(const Campaign& campaign, bool with_calibration) {
 }
 
 void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
-                       const AssessmentContext& context, const BlindLoops& loops, const BlindParts& parts) {
+                       const AssessmentContext& context, const BlindRecords& records,
+                       const BlindParts& parts) {
   const Study& study = campaign.study;
   const std::string hash = loops_hash(campaign, parts.calibration);
   nlohmann::ordered_json description = context_json(context);
-  description["loops"] = loops.count;
+  description["loops"] = records.loops.count;
   description["loops_sha256"] = hash;
   std::optional<int> windows;
   if (parts.windows) {
@@ -259,14 +272,16 @@ void write_blind_loops(const std::filesystem::path& folder, const Campaign& camp
   }
   const std::filesystem::path netcdf = folder / "loops.nc";
   write_file_atomically(netcdf, [&](const std::filesystem::path& temporary) {
-    write_blind_netcdf(temporary, netcdf.string(), study, context, loops, hash);
+    write_blind_netcdf(temporary, netcdf.string(), study, context, records, hash);
     seal_file(temporary);
   });
-  write_blind_csv(folder / "loops.csv", study, loops, hash);
-  if (context.benchmark)
+  write_blind_csv(folder / "loops.csv", study, records.loops, hash);
+  if (records.benchmarks)
+    write_blind_csv(folder / "benchmark.csv", study, *records.benchmarks, hash);
+  else if (context.benchmark)
     write_blind_text(folder / "benchmark.csv", benchmark_csv(study, *context.benchmark));
   write_blind_text(folder / "context.json", description.dump(1) + "\n");
-  write_blind_text(folder / "verdicts.csv", empty_verdicts(loops.count, windows, hash));
+  write_blind_text(folder / "verdicts.csv", empty_verdicts(records.loops.count, windows, hash));
 }
 
 }  // namespace mpm

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,12 @@ struct BlindLoops {
   std::function<Next()> begin;
 };
 
+/// The loops of an export, and where each has a benchmark of its own, these.
+struct BlindRecords {
+  BlindLoops loops;
+  std::optional<BlindLoops> benchmarks = {};
+};
+
 /// The names of the rows of a signal of the loops of a study.
 std::vector<std::string> row_names(const Study& study, const LoopSignal& signal);
 
@@ -54,10 +61,12 @@ std::string loops_hash(const Campaign& campaign, bool with_calibration);
 std::string hash_line(const std::string& hash);
 
 /// Writes a blind export into `folder`, which must be there (docs/bring_your_own.md): `loops.nc` (netCDF-4),
-/// `loops.csv`, `benchmark.csv`, `context.json` and `verdicts.csv`, a form to fill in. `loops` are those of
-/// blind_order(). With windows the study must monitor. Errors: ArchiveError when a file cannot be written.
+/// `loops.csv`, `benchmark.csv`, `context.json` and `verdicts.csv`, a form to fill in. `records` are those of
+/// blind_order(). The benchmark is that of the context, or each loop has its own. With windows the study must
+/// monitor. Errors: ArchiveError when a file cannot be written.
 void write_blind_loops(const std::filesystem::path& folder, const Campaign& campaign,
-                       const AssessmentContext& context, const BlindLoops& loops, const BlindParts& parts);
+                       const AssessmentContext& context, const BlindRecords& records,
+                       const BlindParts& parts);
 
 /// CSV with the columns `loop` and `experiment` (its index; empty: a calibration loop): the key of a blind
 /// export, for whoever trains a method on it.

@@ -82,4 +82,9 @@ constexpr std::int64_t basis_index(int world) {
   return world == kExactWorld ? kBasisIndex : kSharedIndex - 1 - world;
 }
 
+/// The index under which a benchmark that belongs to experiment `index` alone is drawn: below all others.
+constexpr std::int64_t own_benchmark_index(std::int64_t index) {
+  return -(std::int64_t{1} << 50) - index;
+}
+
 }  // namespace mpm

@@ -209,6 +209,44 @@ TEST_CASE("comparison: loops that Ipopt runs again give the same bits for any nu
   }
 }
 
+TEST_CASE("blind loops: in worlds each has a benchmark of its plant that no other loop shares") {
+  const Study study = changed_study(find_study("wood-berry"),
+                                    {{"simulation.samples", "80"},
+                                     {"simulation.excitation", "\"each\""},
+                                     {"experiments", "{mpm = 2, ud = 0, mpm_ud = 0, healthy = 2}"},
+                                     {"world.count", "1"},
+                                     {"world.cost_loops", "1"},
+                                     {"world.repair_loops", "0"},
+                                     {"world.gain_factor", "{constant = 1.2}"},
+                                     {"calibration.healthy", "2"},
+                                     {"calibration.ud", "0"}},
+                                    "worlds");
+  RunOptions options = few();
+  options.allow_unhealthy_basis = true;
+  options.methods = {"sse"};
+  const Campaign campaign = run_serially(study, options);
+  const std::vector<BlindLoop> order = blind_order(campaign, true);
+  ShardStore one(ShardIdentity{}), several(ShardIdentity{});
+  run_blind_loops(campaign, order, 1, {}, one);
+  run_blind_loops(campaign, order, 3, {}, several);
+  const BlindLoops::Next next_loop = blind_loops_in(one, order.size()).begin(),
+                         next_benchmark = blind_benchmarks_in(one, order.size()).begin(),
+                         again = blind_benchmarks_in(several, order.size()).begin();
+  std::vector<AssessedLoop> seen;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const AssessedLoop loop = next_loop(), benchmark = next_benchmark();
+    REQUIRE((loop.samples() == 80 && benchmark.samples() == 80));
+    CHECK(benchmark.y == again().y);
+    // The plant is that of the world: its gains are 1.2 times those of the model, which y_sim has.
+    CHECK(benchmark.y.cwiseProduct(benchmark.y_sim).sum() / benchmark.y_sim.squaredNorm() ==
+          Approx(1.2).margin(0.1));
+    CHECK(loop.y != benchmark.y);
+    for (const AssessedLoop& other : seen)
+      CHECK((other.y != benchmark.y && other.d != benchmark.d));
+    seen.push_back(benchmark);
+  }
+}
+
 TEST_CASE("comparison: an archive may lack experiments between those that it has") {
   RunOptions options = few();
   options.methods = {"botelho"};

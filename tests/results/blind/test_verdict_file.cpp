@@ -106,7 +106,7 @@ TEST_CASE("blind loops: one that did not run to its end is missing throughout, t
                          }};
   const TemporaryFolder folder;
   write_blind_loops(folder.path(), campaign,
-                    {campaign.study, campaign.basis, qp_solver_factory("active-set")}, loops, {});
+                    {campaign.study, campaign.basis, qp_solver_factory("active-set")}, {loops}, {});
   const std::string text = file_content(folder / "loops.csv");
   const auto rows = [&](const std::string& start, const std::string& value) {
     int count = 0;
