@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "analysis/methods/unfit_option.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
@@ -161,8 +160,6 @@ Assessment Assessor::asked_of_seen(const AssessedLoop& loop) {
     if (assessment.flagged && locates_cvs_ && !assessment.worst_cv())
       return Assessment::failed("it flags the loop and names no CV");
     return assessment;
-  } catch (const UnfitOption&) {
-    throw;
   } catch (const InputError& error) {
     return Assessment::failed(error.what());
   }
@@ -188,8 +185,6 @@ void Assessor::learn() {
       seen_->benchmark = *of_benchmark_;
     }
     method_ = make_(seen());
-  } catch (const UnfitOption&) {
-    throw;
   } catch (const InputError& error) {
     unusable_ = error.what();
     throw;

@@ -207,7 +207,7 @@ def check_no_loop(compare, archive):
 
 
 def check_unfit_options(compare):
-    """Options that do not fit the study are refused, not an end of the program, also where loops run by Ipopt."""
+    """A method whose options do not fit the study does not apply, and says by which; the others answer."""
     source = pathlib.Path(__file__).parents[2] / "scenarios" / "studies" / "wood-berry-mixed.toml"
     study, archive = compare.folder / "odd.toml", compare.folder / "odd.h5"
     text = source.read_text(encoding="utf-8")
@@ -219,8 +219,11 @@ step = [{cv = "xD", sample = 20, level = 0.5}, {md = "F", sample = 60, level = 0
     study.write_text(short + "\n[assessment.sun]\nnoise = \"benchmark\"\nnoise_order = 100\n", encoding="utf-8")
     compare.run("run", study, "-o", archive, "--experiments", 2, "--solver", "ipopt", "--quiet")
     for jobs in (1, 2):
-        message = compare.run("compare", archive, "--methods", "sun", "--jobs", jobs, "--quiet", code=2)
-        assert "assessment.sun.noise_order: found 100" in message, message
+        both = compare.folder / f"both{jobs}.h5"
+        compare.run("compare", archive, "--methods", "sun,sse", "--jobs", jobs, "--quiet", "-o", both)
+        rows = compare.run("export", both, "--table", "sun").splitlines()[1:]
+        assert len(rows) == 2 and all("assessment.sun.noise_order is 100" in row for row in rows), rows
+        assert not any("assessment" in row for row in compare.run("export", both, "--table", "sse").splitlines()[1:])
 
 
 def main(program):

@@ -4,14 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/model_quality.hpp"
-#include "analysis/methods/unfit_option.hpp"
-#include "base/error.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
@@ -92,23 +91,25 @@ Eigen::VectorXd weights_of(const MpcOptions& controller) {
              : controller.setpoint_weight;
 }
 
-/// An autoregression of this order needs three times as many samples (autoregressive_noise()).
-void require_long_benchmark(Eigen::Index samples, int order) {
-  if (samples < 3 * order)
-    throw UnfitOption("assessment.sun.noise_order",
-                      fmt::format("{} for a benchmark of {} samples", order, samples),
-                      fmt::format("at most {}, a third of them", samples / 3));
+/// Why there is no noise model: it should come from a benchmark that is not known, or that is shorter than
+/// three times the order of the autoregression (autoregressive_noise()).
+std::optional<std::string> unmet_noise(const SunOptions& sun, const AssessmentContext& context) {
+  if (sun.noise != SunNoise::benchmark)
+    return std::nullopt;
+  if (!context.benchmark)
+    return "its noise model comes from a benchmark period, and none is known";
+  if (const Eigen::Index samples = context.benchmark->samples(); samples < 3 * sun.noise_order)
+    return fmt::format("assessment.sun.noise_order is {}, and a benchmark of {} samples allows at most {}",
+                       sun.noise_order, samples, samples / 3);
+  return std::nullopt;
 }
 
-/// G_d0 of each CV; none when it should come from a benchmark that is not known.
-std::optional<std::vector<NoiseModel>> noise_models(const SunOptions& sun, const AssessmentContext& context) {
+/// G_d0 of each CV; there must be one.
+std::vector<NoiseModel> noise_models(const SunOptions& sun, const AssessmentContext& context) {
   std::vector<NoiseModel> models(static_cast<std::size_t>(context.study.cv_count()));
   if (sun.noise == SunNoise::integrated)
     std::fill(models.begin(), models.end(), integrated_noise(sun.noise_filter));
   if (sun.noise == SunNoise::benchmark) {
-    if (!context.benchmark)
-      return std::nullopt;
-    require_long_benchmark(context.benchmark->samples(), sun.noise_order);
     const Eigen::MatrixXd v = context.benchmark->y - context.benchmark->y_sim;
     for (std::size_t i = 0; i < models.size(); ++i)
       models[i] = autoregressive_noise(v.row(static_cast<Eigen::Index>(i)).transpose(), sun.noise_order);
@@ -134,17 +135,18 @@ class Sun final : public AssessmentMethod {
       : sun_(context.study.assessment.of<SunOptions>()),
         options_(quality_options(sun_)),
         weights_(weights_of(context.study.controller)),
-        noise_(noise_models(sun_, context)) {}
+        unmet_(unmet_noise(sun_, context)),
+        noise_(unmet_ ? std::vector<NoiseModel>() : noise_models(sun_, context)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
-    if (!noise_)
-      return Assessment::not_applicable("its noise model comes from a benchmark period, and none is known");
+    if (unmet_)
+      return Assessment::not_applicable(*unmet_);
     const Eigen::MatrixXd r = references_of(loop, sun_.measured_disturbances);
     if (const Eigen::Index fewest = fewest_samples(options_.arx, loop.y.rows(), r.rows());
         loop.samples() < fewest)
       return Assessment::not_applicable(
           fmt::format("its ARX models need {} samples or more, or other [assessment.sun] orders", fewest));
-    const ModelQuality quality = model_quality(loop.y, r, loop.y_sim, weights_, *noise_, options_);
+    const ModelQuality quality = model_quality(loop.y, r, loop.y_sim, weights_, noise_, options_);
     Assessment assessment;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
       add_cv(cv, loop.has_setpoint(cv), quality, assessment);
@@ -187,7 +189,8 @@ class Sun final : public AssessmentMethod {
   const SunOptions& sun_;
   ModelQualityOptions options_;
   Eigen::VectorXd weights_;
-  std::optional<std::vector<NoiseModel>> noise_;
+  std::optional<std::string> unmet_;
+  std::vector<NoiseModel> noise_;
 };
 
 }  // namespace
