@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -8,18 +9,41 @@
 #include <fmt/format.h>
 
 #include "analysis/identification/group_lasso.hpp"
+#include "analysis/identification/lasso_penalty.hpp"
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/literature/mismatch_profile.hpp"
 #include "analysis/methods/literature/prewhitened_groups.hpp"
 #include "analysis/statistics/best_candidate.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/toml/option_keys.hpp"
 
 namespace mpm {
 namespace {
 
 /// The probability that a loop without mismatch is flagged, shared out to all channels.
 constexpr double kLassoFalseAlarms = 0.01;
+
+/// How large lambda is.
+enum class LassoPenalty : std::int8_t {
+  chance,  ///< a group that explains nothing enters with the probability kLassoFalseAlarms, shared out
+  cross_validation,  ///< cross_validated_penalty(), as Kono and Koizumi have it
+};
+
+struct LassoOptions {
+  LassoPenalty penalty = LassoPenalty::chance;
+
+  bool operator==(const LassoOptions&) const = default;
+};
+
+OptionKeys keys(LassoOptions& options) {
+  return {key::choice("penalty", options.penalty, {"chance", "cross-validation"},
+                      "how large lambda is: a channel that explains nothing enters with a probability of 1 % "
+                      "shared out to all "
+                      "channels, and those that stay beside the others are named; or as the paper has it, by "
+                      "cross-validation "
+                      "over five stretches of the record, and all channels that enter are named")};
+}
 
 using Groups = std::vector<Eigen::MatrixXd>;
 
@@ -70,6 +94,17 @@ std::vector<std::size_t> selected_groups(const PrewhitenedGroups& groups, double
   return selected;
 }
 
+/// The groups that enter under the penalty that predicts best.
+std::vector<std::size_t> groups_by_cross_validation(const PrewhitenedGroups& groups) {
+  const double lambda = cross_validated_penalty(groups.r, groups.Q);
+  const std::vector<Eigen::VectorXd> b = penalised_coefficients(groups.r, groups.Q, lambda);
+  std::vector<std::size_t> selected;
+  for (std::size_t j = 0; j < b.size(); ++j)
+    if (!b[j].isZero(0.0))
+      selected.push_back(j);
+  return selected;
+}
+
 Groups groups_of(const Groups& all, const std::vector<std::size_t>& places) {
   Groups some;
   for (const std::size_t place : places)
@@ -79,13 +114,14 @@ Groups groups_of(const Groups& all, const std::vector<std::size_t>& places) {
 
 /// The lasso shrinks what it selects, and what it so leaves of one channel draws in others that move like it.
 /// Of the selected channels those are named that explain, beside the others and with the noise model of what
-/// they leave, more than chance does; the weakest is dropped first.
-LassoCv lasso_of(const Eigen::VectorXd& e, const Groups& filters, double probability) {
+/// they leave, more than chance does; the weakest is dropped first. With cross-validation all are named.
+LassoCv lasso_of(const Eigen::VectorXd& e, const Groups& filters, double probability, LassoPenalty penalty) {
   LassoCv result;
   const PrewhitenedGroups groups = prewhitened_groups(e, filters);
   result.ratios = entry_ratios(groups, probability);
   if (groups.variance > 0.0)
-    result.selected = selected_groups(groups, probability);
+    result.selected = penalty == LassoPenalty::chance ? selected_groups(groups, probability)
+                                                      : groups_by_cross_validation(groups);
   result.named = result.selected;
   while (!result.named.empty()) {
     result.refined = refined_groups(e, groups_of(filters, result.named));
@@ -93,7 +129,7 @@ LassoCv lasso_of(const Eigen::VectorXd& e, const Groups& filters, double probabi
     for (std::size_t i = 0; i < result.named.size(); ++i)
       partial.push_back(result.refined.partial_ratio(i) / result.refined.critical_ratio(i, probability));
     const auto weakest = std::min_element(partial.begin(), partial.end());
-    if (*weakest > 1.0) {
+    if (*weakest > 1.0 || penalty == LassoPenalty::cross_validation) {
       for (std::size_t i = 0; i < partial.size(); ++i)
         result.ratios[result.named[i]] = partial[i];
       result.score = *std::max_element(partial.begin(), partial.end());
@@ -118,10 +154,11 @@ LassoCv lasso_of(const Eigen::VectorXd& e, const Groups& filters, double probabi
 /// for each CV, with r and Q_j the simulation error and the responses of three filters of channel j, both
 /// prewhitened (PrewhitenedGroups). The penalty is that at which a group that explains nothing enters with
 /// the probability alpha = 1 % shared out to all channels of the loop, so that it needs neither
-/// cross-validation nor a benchmark.
+/// cross-validation nor a benchmark; LassoPenalty has that of the paper.
 class Lasso final : public AssessmentMethod {
  public:
-  explicit Lasso(const AssessmentContext& context) : study_(context.study) {}
+  explicit Lasso(const AssessmentContext& context)
+      : study_(context.study), penalty_(context.study.assessment.of<LassoOptions>().penalty) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::MatrixXd inputs = inputs_until(loop);
@@ -133,7 +170,7 @@ class Lasso final : public AssessmentMethod {
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const Eigen::VectorXd e = (loop.y.row(cv) - loop.y_sim.row(cv)).transpose();
       const Groups filters = filters_of(cv, inputs, loop.samples());
-      LassoCv found = lasso_of(e, filters, probability);
+      LassoCv found = lasso_of(e, filters, probability, penalty_);
       const std::optional<NamedMismatch> surest = surest_mismatch(cv, found, e, filters, inputs);
       if (!found.named.empty() && !(found.score <= assessment.score))
         assessment.named_mismatch = surest;
@@ -254,6 +291,7 @@ class Lasso final : public AssessmentMethod {
   }
 
   const Study& study_;
+  LassoPenalty penalty_;
 };
 
 }  // namespace
@@ -276,7 +314,8 @@ AssessmentMethodInfo lasso_method() {
                    {"gain_factor", NumberScope::channel,
                     "static gain of a selected channel over that of the model"}}},
       {},
-      [](const AssessmentContext& context) { return std::make_unique<Lasso>(context); }};
+      [](const AssessmentContext& context) { return std::make_unique<Lasso>(context); },
+      option_table<LassoOptions>(keys, "of the method `lasso`")};
 }
 
 }  // namespace mpm

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -6,6 +7,7 @@
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
+#include "analysis/study_files/study_change.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "tests/analysis/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
@@ -58,6 +60,21 @@ TEST_CASE("lasso: the basis case is not flagged; a gain, with and without a slow
   AssessedLoop disturbed = *changed.context.benchmark;
   disturbed.y.row(1) += 0.1 * testing::settled_autoregression(400, 0.97, 6).transpose();
   CHECK_FALSE(lasso.assess(disturbed).flagged);
+}
+
+TEST_CASE("lasso: with the penalty of the paper more channels are named, the wrong one among them") {
+  ChangedChannel changed;
+  changed.study =
+      changed_study(changed.study, {{"assessment.lasso.penalty", "\"cross-validation\""}}, "paper");
+  Assessor lasso(assessment_method("lasso"), changed.context);
+  const AssessedLoop loop = changed.with(3, 2, changed.study.plant.G(3, 2).with_gain_scaled(0.7));
+  const Assessment found = lasso.assess(loop);
+  CHECK(found.flagged);
+  CHECK(found.worst_cv() == Eigen::Index{3});
+  const std::vector<Channel>& named = found.flagged_channels;
+  CHECK(std::find(named.begin(), named.end(), Channel{3, 2}) != named.end());
+  REQUIRE(found.named_mismatch);
+  CHECK(found.named_mismatch->channel == Channel{3, 2});
 }
 
 TEST_CASE("lasso: it needs MVs that move and a record of some length") {
