@@ -137,6 +137,17 @@ class Board(Rated):
                 for rate, value in method["families"].get(name, {}).get("rates", {}).items()}
         return pandas.DataFrame.from_dict(rows, orient="index").rename_axis(["method", "rate"])
 
+    def agreement(self, rate):
+        """pandas DataFrame, families x families: Spearman's rank correlation of the methods by a rate; 1: two families
+        rank them alike. NaN where fewer than two methods have the rate in both."""
+        import pandas
+        rates = pandas.DataFrame({family["name"]: {
+            method["name"]: method["families"].get(family["name"], {}).get("rates", {}).get(rate, {}).get("value")
+            for method in self.json["methods"]} for family in self.json["families"]}, dtype=float)
+        if rates.isna().all(axis=None):
+            raise KeyError(f"rate: found '{rate}'; allowed: {', '.join(self.json['rates'])}")
+        return rates.corr(method="spearman")
+
     def archive(self, plant, family):
         """The archive of a cell."""
         if self.folder is None:

@@ -355,7 +355,16 @@ class Boards(unittest.TestCase):
         self.assertIn("sse", board.archive(STUDY, "shapes").methods)
         with self.assertRaisesRegex(KeyError, "found 'weather'; allowed: classic, shapes"):
             board.family("weather")
+        alike = board.agreement("detected")
+        self.assertEqual(list(alike.columns), ["classic", "shapes"])
+        self.assertTrue((alike == alike.T).all(axis=None) and alike.max(axis=None) <= 1 + 1e-12)
+        with self.assertRaisesRegex(KeyError, "found 'rain'"):
+            board.agreement("rain")
 
+    def test_families_that_rank_methods_alike(self):
+        alike = mpmbench.board("standard").agreement("source_05_impact")
+        self.assertGreater(alike.loc["exact", "background"], 0.95)
+        self.assertLess(alike.loc["worlds", "drift"], 0.7)
 
     def test_a_method_joins_a_finished_board(self):
         words_of = {"plants": "wood-berry", "families": "exact", "quiet": True}
