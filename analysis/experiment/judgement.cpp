@@ -131,13 +131,14 @@ FaultSource named_source(const AssessmentRecord& assessment) {
   return assessment.answered() && assessment.flagged ? assessment.predicted_source : FaultSource::none;
 }
 
-bool names_source(const ExperimentRecord& record, FaultSource named) {
-  const FaultSource truth = source_of(record.draw.kind);
+bool names_source(ExperimentKind fault, FaultSource named) {
+  const FaultSource truth = source_of(fault);
   return named == truth || (truth == FaultSource::other && named == FaultSource::none);
 }
 
 bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessment) {
-  return assessment.answered() && assessment.flagged && names_source(record, named_source(assessment));
+  return assessment.answered() && assessment.flagged &&
+         names_source(record.draw.kind, named_source(assessment));
 }
 
 bool to_be_flagged(const Study& study, const ExperimentRecord& record, FlagTruth truth) {

@@ -87,9 +87,9 @@ bool in_source_population(const Study& study, const AssessmentRecord& assessment
 /// None when the loop is not flagged, nothing is said, or the method tells no sources.
 FaultSource named_source(const AssessmentRecord& assessment);
 
-/// Is this the source of the fault of the loop, which must have one? Of a fault that is neither mismatch nor
+/// Is this the source of a fault of this kind? Of a fault that is neither mismatch nor
 /// disturbance `other` is, and `none`.
-bool names_source(const ExperimentRecord& record, FaultSource named);
+bool names_source(ExperimentKind fault, FaultSource named);
 
 /// Is the fault told from the others (mismatch, disturbance, both, another one)? The loop must have a fault.
 /// Nothing said is not right. Of a fault that is neither of them the right answer is a flagged loop with the

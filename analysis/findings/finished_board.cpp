@@ -25,6 +25,7 @@ MethodScores on_same_loops(const CellScores& cell, const CellScores& theirs, con
   MethodScores same = scores_of_outcomes(cell, std::move(outcomes), scores.scope);
   same.reason = scores.reason;
   same.estimates = scores.estimates;
+  same.reliability = scores.reliability;
   return same;
 }
 

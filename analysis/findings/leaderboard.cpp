@@ -35,6 +35,10 @@ PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, doub
     pooled.answering_cells += scores["answered"].hits > 0 ? 1 : 0;
     if (pooled.reason.empty())
       pooled.reason = scores.reason;
+    pooled.reliability.add(scores.reliability);
+    for (std::size_t loop = 0; scores.scope.is_told && loop < scores.outcomes.size(); ++loop)
+      if (scores.outcomes[loop])
+        pooled.confusions.add(*cell.truths[loop], *scores.outcomes[loop]);
   }
   for (const RateRow& row : rate_rows()) {
     std::vector<std::vector<ClusterCount>> strata;  // the worlds of each cell
@@ -56,6 +60,8 @@ PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, doub
       strata.push_back(scores->estimates.of(row).clusters);
     pooled.estimates.of(row) = clustered_mean(strata, confidence);
   }
+  pooled.estimates["calibration_error"] = {.value = pooled.reliability.error(),
+                                           .count = pooled.reliability.count()};
   return pooled;
 }
 
@@ -116,7 +122,8 @@ CellScores cell_scores(const SuiteCell& cell, const StudyFindings& findings) {
          .rates = method.rates.rates,
          .estimates = method.rates.estimates,
          .outcomes = method.rates.outcomes,
-         .scope = outcome_scope(cell.study, method.form->method(), method.rates.thresholds)});
+         .scope = outcome_scope(cell.study, method.form->method(), method.rates.thresholds),
+         .reliability = method.rates.reliability});
   return scores;
 }
 

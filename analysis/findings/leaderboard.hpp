@@ -9,6 +9,7 @@
 
 #include "analysis/findings/loop_outcome.hpp"
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/findings/source_confusions.hpp"
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
@@ -30,6 +31,7 @@ struct MethodScores {
   /// Of one cell: what it said of each loop (MethodRates::outcomes), and which rates that decides.
   LoopOutcomes outcomes = {};
   OutcomeScope scope = {};
+  Reliability reliability = {};  ///< of the probabilities that it states, if it does
 
   const Rate& operator[](std::string_view rate) const { return rates[rate]; }
 };
@@ -67,6 +69,7 @@ struct PooledScores : MethodScores {
   /// not counted, and where low is good. Empty where there is no reference: it was not asked, or the family
   /// is not its own.
   std::vector<double> shares_of_ceiling = {};
+  SourceConfusions confusions = {};  ///< of the cells of which its answers are kept
   /// It gave a verdict on fewer than kFewestAnswers of the loops: its rates rest on a part of what those of
   /// others rest on.
   bool answers_in_part() const;

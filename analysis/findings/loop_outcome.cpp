@@ -46,13 +46,16 @@ std::vector<OutcomeFact> outcome_facts() {
       verdict<&LoopOutcome::mismatch>(),
       {6, [](const LoopOutcome& said) { return unsigned{said.redrawn_05}; },
        [](LoopOutcome& said, unsigned number) { said.redrawn_05 = static_cast<std::uint8_t>(number); }},
+      {3, [](const LoopOutcome& said) { return static_cast<unsigned>(said.told); },
+       [](LoopOutcome& said, unsigned number) { said.told = static_cast<ToldSource>(number); }},
   };
 }
 
 FaultTruth truth_of(const Study& study, const ExperimentRecord& record) {
   const bool faulty = !is_faultless(record.draw.kind);
   return {record.draw.kind, faulty && has_impact(study.diagnosis, record),
-          faulty && record.draw.true_cv() >= 0};
+          faulty && record.draw.true_cv() >= 0,
+          record.draw.other ? told_source(*record.draw.other) : ToldSource::other};
 }
 
 OutcomeScope outcome_scope(const Study& study, const MethodDescription& method,
@@ -65,8 +68,22 @@ OutcomeScope outcome_scope(const Study& study, const MethodDescription& method,
           .at_01 = thresholds.at_01.value.has_value(),
           .at_not_mpm = thresholds.not_mpm.value.has_value(),
           .chosen_is_05 = study.calibration && study.calibration->false_alarms == 0.05,
-          .is_whole = true};
+          .is_whole = true,
+          .is_told = true};
 }
+
+namespace {
+
+/// Is the source that it tells one that such a method can tell, and what the facts about it say?
+bool is_told_rightly(const LoopOutcome& said, const FaultTruth& truth, const OutcomeScope& scope) {
+  const FaultSource told = source_of(said.told);
+  if (!scope.is_told || !scope.tells_sources)
+    return told == FaultSource::none;
+  return said.names_source == (said.flagged && told != FaultSource::none) &&
+         said.right_source == (truth.faulty() && names_source(truth.kind, told));
+}
+
+}  // namespace
 
 bool is_possible(const LoopOutcome& said, const FaultTruth& truth, const OutcomeScope& scope) {
   if (!said.answered)
@@ -82,7 +99,8 @@ bool is_possible(const LoopOutcome& said, const FaultTruth& truth, const Outcome
                                       !judged(said.candidate));
   const bool redrawn = said.redrawn_05 == 0 || (scope.at_05 && scope.in_worlds);
   const bool of_model = (truth.has_mismatch() || truth.kind == ExperimentKind::ud) && scope.tells_sources;
-  return above && redrawn && named && judged(said.mismatch) <= of_model && asked && right &&
+  return above && redrawn && named && is_told_rightly(said, truth, scope) &&
+         judged(said.mismatch) <= of_model && asked && right &&
          judged(said.size) <= judged_rightly(said.parameter) && judged(said.window) <= truth.impact;
 }
 

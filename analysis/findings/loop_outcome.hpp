@@ -7,6 +7,7 @@
 #include "analysis/experiment/experiment_record.hpp"
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/findings/calibration.hpp"
+#include "scenarios/faults/told_source.hpp"
 
 // What the rates of methods ask of a loop, and of what a method said of it: a few facts, so that finished
 // results can be kept, counted again, and held against those of another method loop by loop.
@@ -16,10 +17,12 @@ namespace mpm {
 /// What is true of a loop.
 struct FaultTruth {
   ExperimentKind kind = ExperimentKind::healthy;
-  bool impact = false;  ///< has_impact() of its fault
-  bool one_cv = false;  ///< its fault affects one CV
+  bool impact = false;                   ///< has_impact() of its fault
+  bool one_cv = false;                   ///< its fault affects one CV
+  ToldSource about = ToldSource::other;  ///< of the kind `other`: what its fault is about
 
   bool faulty() const { return !is_faultless(kind); }
+  ToldSource source() const { return told_source(source_of(kind), about); }
   bool has_mismatch() const { return kind == ExperimentKind::mpm || kind == ExperimentKind::mpm_ud; }
   bool operator==(const FaultTruth&) const = default;
 };
@@ -46,6 +49,8 @@ struct LoopOutcome {
   Correctness mismatch = {};
   /// CalibratedThresholds::redraws_exceeded_by() its score: what `above_05` would be under other thresholds.
   std::uint8_t redrawn_05 = 0;
+  /// The source that it would name if it flagged the loop; none of a method that tells none.
+  ToldSource told = ToldSource::none;
 
   bool operator==(const LoopOutcome&) const = default;
 };
@@ -75,7 +80,8 @@ struct OutcomeScope {
   bool at_01 = false;         ///< it has the threshold calibrated for 1 %
   bool at_not_mpm = false;    ///< that for 5 % among loops without a mismatch
   bool chosen_is_05 = false;  ///< calibration.false_alarms are 5 %
-  bool is_whole = false;      ///< all facts are known; otherwise those up to LoopOutcome::right_source
+  bool is_whole = false;      ///< all facts before `told` are known; otherwise those up to `right_source`
+  bool is_told = false;       ///< LoopOutcome::told is known
 };
 
 FaultTruth truth_of(const Study& study, const ExperimentRecord& record);

@@ -19,7 +19,6 @@
 #include "base/non_finite.hpp"
 
 namespace mpm {
-namespace {}  // namespace
 
 struct LoopMeasures {
   WorldMean repair_gain_share, repair_gain_share_05;
@@ -76,7 +75,8 @@ LoopOutcome SeenLoop::outcome() const {
       .above_05 = thresholds.at_05.exceeded_by(said.score),
       .above_chosen = thresholds.chosen.exceeded_by(said.score),
       .right_cv = truth.faulty() && said.flagged && method.locates_cvs && cv >= 0 && said.predicted_cv == cv,
-      .right_source = truth.faulty() && method.tells_sources && names_source(record, said.predicted_source),
+      .right_source =
+          truth.faulty() && method.tells_sources && names_source(truth.kind, said.predicted_source),
       .above_01 = thresholds.at_01.exceeded_by(said.score),
       .above_not_mpm = thresholds.not_mpm.exceeded_by(said.score),
       .names_source = named_source(said) != FaultSource::none,
@@ -84,7 +84,8 @@ LoopOutcome SeenLoop::outcome() const {
       .parameter = judgement.parameter,
       .size = judgement.size,
       .candidate = judgement.candidate,
-      .redrawn_05 = static_cast<std::uint8_t>(thresholds.redraws_exceeded_by(said.score))};
+      .redrawn_05 = static_cast<std::uint8_t>(thresholds.redraws_exceeded_by(said.score)),
+      .told = method.tells_sources ? said.told() : ToldSource::none};
   if (method.tells_sources && (truth.has_mismatch() || truth.kind == ExperimentKind::ud)) {
     const FaultSource named = said.predicted_source;
     const bool says_so = named == FaultSource::mpm || named == FaultSource::mpm_ud;
@@ -178,8 +179,7 @@ constexpr std::array<EstimateRow, 10> kEstimates{{
       "the truth, in bins of a tenth",
       true},
      [](const LoopMeasures& of, const Study&) {
-       return Estimate{.value = of.reliability.error(),
-                       .count = static_cast<std::int64_t>(of.reliability.count())};
+       return Estimate{.value = of.reliability.error(), .count = of.reliability.count()};
      },
      false},
     {{"channels_named", "Channels named, mean",
@@ -295,6 +295,7 @@ class MethodCounts {
     found_.rates = counts_.rates(confidence);
     for (const EstimateRow& row : estimate_rows())
       found_.estimates.of(row) = row.estimate(measures_, study_);
+    found_.reliability = measures_.reliability;
     found_.milliseconds = median_estimate(std::move(measures_.milliseconds), confidence).value;
     const SortedScores impact(std::move(measures_.impact_scores)),
         no_impact(std::move(measures_.no_impact_scores)), healthy(std::move(measures_.healthy_scores));

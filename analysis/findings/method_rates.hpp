@@ -10,6 +10,7 @@
 #include "analysis/findings/collector.hpp"
 #include "analysis/findings/finding.hpp"
 #include "analysis/findings/rate_table.hpp"
+#include "analysis/methods/source_probabilities.hpp"
 #include "analysis/statistics/estimate.hpp"
 #include "analysis/statistics/interval.hpp"
 #include "analysis/statistics/roc.hpp"
@@ -52,6 +53,7 @@ struct MethodRates {
   VerdictFailures failures = {};
   Rates rates = Rates();
   Estimates estimates = {};
+  Reliability reliability = {};  ///< of the probabilities that it states, if it does
   CalibratedThresholds thresholds = {};
   RocCurve roc = {};       ///< of the score, loops with a fault against healthy ones
   Interval roc_area = {};  ///< of roc.area; NaN when there is no curve

@@ -11,6 +11,7 @@
 #include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
+#include "scenarios/faults/told_source.hpp"
 
 namespace mpm {
 
@@ -34,6 +35,7 @@ struct CvAssessment {
   double score = kNaN;
   /// From methods that tell sources apart, for a flagged CV or the worst one: mpm or ud; otherwise none.
   FaultSource source = FaultSource::none;
+  ToldSource about = ToldSource::other;  ///< of the source `other`: what it is about, where that is said
 };
 
 /// A channel of the model, CV against MV.

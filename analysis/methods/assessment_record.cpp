@@ -13,6 +13,7 @@ namespace mpm {
 namespace {
 
 constexpr const char* kMismatchBound = "mismatch_bound";
+constexpr const char* kToldSource = "told_source";
 
 /// A number of each method that names mismatches, and none that follows from that: archives that were written
 /// before there was one have none.
@@ -107,11 +108,19 @@ AssessmentForms assessment_forms(const Study& study, const std::vector<std::stri
         description.numbers.push_back(std::move(number));
     if (info.names_mismatches)
       description.numbers.push_back(mismatch_bound_info());
+    if (info.tells_sources)
+      description.numbers.push_back(told_source_info());
     if (info.states_false_alarms)
       description.stated_false_alarms = info.states_false_alarms(study.assessment);
     forms.push_back(std::make_shared<const AssessmentForm>(std::move(description), study));
   }
   return forms;
+}
+
+AssessmentNumberInfo told_source_info() {
+  return {{kToldSource, "source of the predicted CV, of another fault what it is about", "1", "",
+           enum_words<ToldSource>()},
+          NumberScope::loop};
 }
 
 double AssessmentRecord::number(std::string_view name, Eigen::Index row, Eigen::Index column) const {
@@ -138,6 +147,14 @@ void AssessmentRecord::set_number(std::string_view name, double value, Eigen::In
 
 bool AssessmentRecord::flags(Eigen::Index cv) const {
   return number("cv_flagged", cv) == 1.0;
+}
+
+ToldSource AssessmentRecord::told() const {
+  const double kept = number(kToldSource);
+  for (const ToldSource told : enumerators<ToldSource>())
+    if (kept == static_cast<double>(told) && source_of(told) == predicted_source)
+      return told;
+  return told_source(predicted_source);
 }
 
 FaultSource AssessmentRecord::source_on(Eigen::Index cv) const {
@@ -190,7 +207,10 @@ AssessmentRecord kept(std::shared_ptr<const AssessmentForm> form, const Assessme
   record.numbers = Eigen::VectorXd::Constant(record.form->size(), kNaN);
   if (const std::optional<Eigen::Index> worst = assessment.worst_cv()) {
     record.predicted_cv = *worst;
-    record.predicted_source = assessment.cvs[static_cast<std::size_t>(*worst)].source;
+    const CvAssessment& of_worst = assessment.cvs[static_cast<std::size_t>(*worst)];
+    record.predicted_source = of_worst.source;
+    if (record.form->find(kToldSource) != nullptr)
+      record.set_number(kToldSource, static_cast<double>(told_source(of_worst.source, of_worst.about)));
   }
   for (std::size_t i = 0; i < assessment.cvs.size() && method.locates_cvs; ++i) {
     const CvAssessment& of_cv = assessment.cvs[i];

@@ -74,8 +74,13 @@ Eigen::Index lag_count(const Study& study);
 using AssessmentForms = std::vector<std::shared_ptr<const AssessmentForm>>;
 
 /// The forms of these methods on the loops of a study. Those that name mismatches have a number
-/// `mismatch_bound` besides, NamedMismatch::bound. Throws InputError for an unknown method.
+/// `mismatch_bound` besides, NamedMismatch::bound, and those that tell sources `told_source`,
+/// AssessmentRecord::told(). Throws InputError for an unknown method.
 AssessmentForms assessment_forms(const Study& study, const std::vector<std::string>& methods);
+
+/// The number `told_source`, which methods have that tell sources and are asked anew: archives that were
+/// written before there was one have none.
+AssessmentNumberInfo told_source_info();
 
 /// The answer of a method on one loop, as it is kept. Its form is that of the method.
 struct AssessmentRecord {
@@ -98,6 +103,8 @@ struct AssessmentRecord {
   void set_number(std::string_view name, double value, Eigen::Index row = 0, Eigen::Index column = 0);
   /// Whether the method flags this CV.
   bool flags(Eigen::Index cv) const;
+  /// `predicted_source`, of `other` with what it is about; without that in an archive that does not keep it.
+  ToldSource told() const;
   /// The source that it sees in a flagged CV.
   FaultSource source_on(Eigen::Index cv) const;
   /// Whether the method names this channel.

@@ -144,6 +144,12 @@ class AnswerReader {
     return value;
   }
 
+  static void take_source(ToldSource told, CvAssessment& cv) {
+    cv.source = source_of(told);
+    if (cv.source == FaultSource::other)
+      cv.about = told;
+  }
+
   void read_cvs(const Json& answer, Assessment& assessment) const {
     const Json* const cv = given_if(method_.locates_cvs, answer, "cv", "cv");
     const Json* const flags = given_if(method_.locates_cvs, answer, "cv_flagged", "cv");
@@ -168,7 +174,7 @@ class AnswerReader {
       if (std::isnan(of_cv.score))
         of_cv.score = *of_cv.flagged ? 1.0 : 0.0;
       if (sources != nullptr && !list("cv_source", *sources, count)[i].is_null())
-        of_cv.source = word<FaultSource>("cv_source", (*sources)[i]);
+        take_source(word<ToldSource>("cv_source", (*sources)[i]), of_cv);
     }
     if (cv == nullptr)
       return;
@@ -178,7 +184,7 @@ class AnswerReader {
     named.flagged = assessment.flagged;
     named.score = std::isnan(assessment.score) ? 0.0 : assessment.score;
     if (source != nullptr)
-      named.source = word<FaultSource>("source", *source);
+      take_source(word<ToldSource>("source", *source), named);
   }
 
   Channel channel(const char* key, const Json& value) const {
@@ -300,7 +306,7 @@ void add_cvs_json(const Assessment& assessment, const PlantModel& plant, bool te
     json["cv_flagged"].push_back(of_cv.flagged ? Json(*of_cv.flagged) : Json());
     json["cv_score"].push_back(number_json(of_cv.score));
     if (tells_sources)
-      json["cv_source"].push_back(to_string(of_cv.source));
+      json["cv_source"].push_back(to_string(told_source(of_cv.source, of_cv.about)));
   }
 }
 

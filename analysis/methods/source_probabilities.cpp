@@ -62,6 +62,14 @@ void Reliability::add(const SourceProbabilities& stated, FaultSource truth) {
       static_cast<std::size_t>(likeliest - stated.begin()) == static_cast<std::size_t>(truth) ? 1 : 0;
 }
 
+void Reliability::add(const Reliability& more) {
+  for (std::size_t i = 0; i < kBins; ++i) {
+    bins_[i].stated += more.bins_[i].stated;
+    bins_[i].count += more.bins_[i].count;
+    bins_[i].right += more.bins_[i].right;
+  }
+}
+
 double Reliability::error() const {
   double sum = 0.0;
   for (const Bin& bin : bins_)
@@ -69,9 +77,9 @@ double Reliability::error() const {
   return count() == 0 ? kNaN : sum / static_cast<double>(count());
 }
 
-std::size_t Reliability::count() const {
-  return std::accumulate(bins_.begin(), bins_.end(), std::size_t{0},
-                         [](std::size_t sum, const Bin& bin) { return sum + bin.count; });
+std::int64_t Reliability::count() const {
+  return std::accumulate(bins_.begin(), bins_.end(), std::int64_t{0},
+                         [](std::int64_t sum, const Bin& bin) { return sum + bin.count; });
 }
 
 }  // namespace mpm

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -44,15 +45,19 @@ class Reliability {
  public:
   struct Bin {
     double stated = 0.0;  ///< sum of the probabilities
-    std::size_t count = 0, right = 0;
+    std::int64_t count = 0, right = 0;
   };
   static constexpr std::size_t kBins = 10;
 
+  Reliability() = default;
+  explicit Reliability(const std::array<Bin, kBins>& bins) : bins_(bins) {}
+
   void add(const SourceProbabilities& stated, FaultSource truth);
+  void add(const Reliability& more);
   const std::array<Bin, kBins>& bins() const { return bins_; }
   /// Mean over the loops of |mean stated probability - share that is right| of their bin; NaN without a loop.
   double error() const;
-  std::size_t count() const;
+  std::int64_t count() const;
 
  private:
   std::array<Bin, kBins> bins_{};

@@ -77,6 +77,30 @@ def board(rated, rates, highlight=()):
     return figure
 
 
+def reliability(bins, methods=None):
+    """A panel a method: how often the likeliest source is the truth, by the probability that the method states for it."""
+    methods = list(dict.fromkeys(bins.index.get_level_values("method"))) if methods is None else list(methods)
+    if not methods:
+        raise ValueError("no method of this board states probabilities")
+    columns = min(3, len(methods))
+    figure, axes = new(-(-len(methods) // columns), columns, size=(2.6 * columns, 2.7 * -(-len(methods) // columns)))
+    for axis, method in zip(axes.ravel(), methods):
+        points = 100 * bins.loc[method, ["stated", "value", "lower", "upper"]].astype(float)
+        axis.plot([0, 100], [0, 100], "--", color="#c8ccd2", linewidth=0.8)
+        axis.errorbar(points["stated"], points["value"], yerr=[points["value"] - points["lower"], points["upper"] - points["value"]],
+                      fmt="o", color=MEASURED, markersize=4, linewidth=1.2)
+        for (_, point), loops in zip(points.iterrows(), bins.loc[method, "total"]):
+            axis.annotate(str(loops), (point["stated"], point["upper"]), xytext=(0, 2), textcoords="offset points", ha="center",
+                          fontsize=6)
+        axis.set(xlim=(-3, 103), ylim=(-3, 112), xticks=[0, 50, 100], yticks=[0, 50, 100])
+        axis.set_title(plain(method), fontsize=9)
+        axis.set_xlabel("stated [%]", fontsize=8)
+    for axis in axes.ravel()[len(methods):]:
+        axis.set_visible(False)
+    axes[0, 0].set_ylabel("is the truth [%]", fontsize=8)
+    return figure
+
+
 def roc(comparison, truth="impact", highlight=()):
     """ROC curves, those to highlight thick and on top."""
     highlight = [highlight] if isinstance(highlight, str) else highlight

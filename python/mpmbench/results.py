@@ -65,9 +65,10 @@ class Rated:
 
     def rank(self, rate):
         """The methods by a rate, best first: pandas DataFrame with its interval. The rates that count what should not be
-        (false alarms) rank the lowest first."""
+        (false alarms), scores of probabilities and errors rank the lowest first."""
         found = self.intervals.xs(rate, level="rate").dropna(subset=["value"])
-        return found.sort_values("value", ascending=rate.startswith(("false_alarm", "flagged_without", "abstained")))
+        low_is_good = rate.startswith(("false_alarm", "flagged_without", "abstained")) or rate.endswith(("_score", "_error"))
+        return found.sort_values("value", ascending=low_is_good)
 
     def plot(self, rates=None, highlight=None):
         """Rates of all methods with their intervals, as a figure of matplotlib; `highlight`: names, own methods unless
@@ -147,6 +148,32 @@ class Board(Rated):
         if rates.isna().all(axis=None):
             raise KeyError(f"rate: found '{rate}'; allowed: {', '.join(self.json['rates'])}")
         return rates.corr(method="spearman")
+
+    @property
+    def reliability(self):
+        """pandas DataFrame of the methods that state probabilities, one row a method and bin of a tenth: the mean
+        probability `stated` for the likeliest source, and the share of its `total` loops in which that is the truth
+        (`value`, with `lower` and `upper`)."""
+        import pandas
+        columns = ["stated", "value", "lower", "upper", "hits", "total"]
+        rows = {(method["name"], place): each for method in self.json["methods"]
+                for place, each in enumerate(method["all"].get("reliability", []))}
+        index = pandas.MultiIndex.from_tuples(rows, names=["method", "bin"])
+        return pandas.DataFrame(list(rows.values()), index=index, columns=columns)
+
+    def confusions(self, method, family=None):
+        """pandas DataFrame of numbers of loops: what is true (rows) against what a method answers (columns), at its own
+        threshold; empty of a board that does not keep it. `family`: of its loops alone."""
+        import pandas
+        found = {each["name"]: each for each in self.json["methods"]}
+        if method not in found:
+            raise KeyError(f"method: found '{method}'; allowed: {', '.join(found)}")
+        scores = found[method]["all"] if family is None else found[method]["families"][family]
+        return pandas.DataFrame(scores.get("confusions", {}), dtype=int).T.rename_axis(index="truth", columns="answer")
+
+    def plot_reliability(self, methods=None):
+        """Reliability diagrams of the methods that state probabilities, as a figure of matplotlib."""
+        return figures.reliability(self.reliability, methods)
 
     def archive(self, plant, family):
         """The archive of a cell."""

@@ -275,6 +275,8 @@ MethodDescription description_of(const VerdictText& text, const std::string& nam
   method.names_candidates = text.uses("candidate");
   if (text.uses("p."))
     method.numbers = source_probability_numbers();
+  if (method.tells_sources)
+    method.numbers.push_back(told_source_info());
   method.origin = fmt::format("file of verdicts {}", file);
   return method;
 }

@@ -1,6 +1,7 @@
 #include "results/suite/board_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +36,20 @@ constexpr const char* kBoardEnding = ".board.json";
 constexpr const char* kFormat = "mpmbench board 1";
 constexpr auto kReplace = BoardJson::error_handler_t::replace;  // what is no UTF-8
 constexpr std::int64_t kMostLoops = 100'000;                    // of a cell
-constexpr const char* kRepairGains[] = {kRankingRepair.data(), "repair_gain_share"};
+constexpr std::int64_t kTextsOfQuestions = 5;                   // all facts but LoopOutcome::told
+
+/// Means of shares that are kept as the sums of each world.
+struct KeptMean {
+  const char* name;
+  /// May the loop have such a share?
+  bool (*counts)(const FaultTruth& truth, const LoopOutcome& said);
+};
+constexpr KeptMean kMeans[] = {
+    {kRankingRepair.data(), [](const FaultTruth& truth, const LoopOutcome&) { return truth.impact; }},
+    {"repair_gain_share", [](const FaultTruth& truth, const LoopOutcome&) { return truth.impact; }},
+    {"log_score", [](const FaultTruth&, const LoopOutcome& said) { return said.answered; }},
+    {"brier_score", [](const FaultTruth&, const LoopOutcome& said) { return said.answered; }}};
+constexpr const char* kReliability = "reliability";
 constexpr const char* kDelays[] = {"detection_delay", "false_alarms_a_day"};
 
 /// The study of a cell with every default, so that it is the same in another version of the program only if
@@ -75,6 +89,17 @@ BoardJson clusters_json(const Estimate& estimate) {
   return clusters;
 }
 
+/// The texts of outcomes that are known of every method: fewer of one that was read from an older file.
+std::size_t known_texts(const Leaderboard& board) {
+  std::size_t texts = outcome_text_count();
+  for (const CellScores& cell : board.cells)
+    for (const MethodScores& scores : cell.methods)
+      texts = scores.scope.is_told    ? texts
+              : scores.scope.is_whole ? std::min<std::size_t>(texts, kTextsOfQuestions)
+                                      : 1;
+  return texts;
+}
+
 BoardJson scores_json(const CellScores& cell, const MethodScores& scores) {
   BoardJson json;
   const std::vector<std::string> texts = outcome_letters(scores.outcomes);
@@ -88,9 +113,12 @@ BoardJson scores_json(const CellScores& cell, const MethodScores& scores) {
     json["failed"] = scores.failed;
   if (!scores.reason.empty())
     json["reason"] = proper_utf8(scores.reason);
-  for (const char* const name : kRepairGains)
-    if (const Estimate& gain = scores.estimates[name]; gain.count > 0)
-      json[name] = clusters_json(gain);
+  for (const KeptMean& mean : kMeans)
+    if (const Estimate& found = scores.estimates[mean.name]; found.count > 0)
+      json[mean.name] = clusters_json(found);
+  if (scores.reliability.count() > 0)
+    for (const Reliability::Bin& bin : scores.reliability.bins())
+      json[kReliability].push_back({rounded(bin.stated), bin.count, bin.right});
   if (cell.monitored)
     for (const char* const name : kDelays)
       if (const Estimate& found = scores.estimates[name]; found.count > 0)
@@ -173,19 +201,22 @@ DrawnLoops drawn_loops(const Study& study, std::int64_t experiments) {
   DrawnLoops drawn;
   for (std::int64_t i = 0; i < experiments; ++i) {
     const ExperimentDraw draw = draw_experiment(study, i);
-    drawn.truths.push_back({.kind = draw.kind, .one_cv = !is_faultless(draw.kind) && draw.true_cv() >= 0});
+    drawn.truths.push_back({.kind = draw.kind,
+                            .one_cv = !is_faultless(draw.kind) && draw.true_cv() >= 0,
+                            .about = draw.other ? told_source(*draw.other) : ToldSource::other});
     drawn.worlds.push_back(draw.world);
   }
   return drawn;
 }
 
 /// [sum, number of values] of each world.
-Estimate gain_in(const JsonEntry& entry, const CellScores& cell, double confidence) {
-  std::vector<std::int64_t> most;  // of the loops with an impact, of each world
+Estimate mean_in(const JsonEntry& entry, const KeptMean& mean, const CellScores& cell,
+                 const LoopOutcomes& outcomes, double confidence) {
+  std::vector<std::int64_t> most;  // of the loops that may have a share, of each world
   for (std::size_t i = 0; i < cell.truths.size(); ++i) {
     const auto world = static_cast<std::size_t>(std::int64_t{cell.worlds[i]} + 1);
     most.resize(std::max(most.size(), world + 1));
-    most[world] += cell.truths[i] && cell.truths[i]->impact ? 1 : 0;
+    most[world] += cell.truths[i] && outcomes[i] && mean.counts(*cell.truths[i], *outcomes[i]) ? 1 : 0;
   }
   const std::vector<JsonEntry> list = entry.list();
   entry.require(list.size() <= most.size(), fmt::format("at most {}, one for each world", most.size()));
@@ -199,6 +230,27 @@ Estimate gain_in(const JsonEntry& entry, const CellScores& cell, double confiden
     clusters.push_back({sum, count});
   }
   return clustered_mean(std::move(clusters), confidence);
+}
+
+/// [sum of the stated probabilities, number of loops, of them right] of each bin, of so many loops.
+Reliability reliability_in(const JsonEntry& entry, std::int64_t loops) {
+  const std::vector<JsonEntry> list = entry.list();
+  entry.require(list.size() == Reliability::kBins, fmt::format("{} bins", Reliability::kBins));
+  constexpr double kRounding = 1.001;
+  std::array<Reliability::Bin, Reliability::kBins> bins{};
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const std::vector<JsonEntry> parts = list[i].list();
+    list[i].require(parts.size() == 3, "a sum, the number of its loops, and how many of them are right");
+    Reliability::Bin& bin = bins[i];
+    bin.count = parts[1].whole(0, loops);
+    bin.right = parts[2].whole(0, bin.count);
+    const double lower = static_cast<double>(bin.count) * static_cast<double>(i) / Reliability::kBins,
+                 upper = lower + static_cast<double>(bin.count) / Reliability::kBins;
+    bin.stated = parts[0].number(lower / kRounding, upper * kRounding);
+  }
+  Reliability reliability(bins);
+  entry.require(reliability.count() == loops, fmt::format("{} loops, those of log_score", loops));
+  return reliability;
 }
 
 /// Of a cell in which methods watch moving windows.
@@ -242,10 +294,12 @@ LoopOutcomes outcomes_in(const JsonEntry& entry, const CellScores& cell, const O
   return outcomes;
 }
 
-MethodScores scores_in(const JsonEntry& entry, const CellScores& cell, const Study& study,
-                       OutcomeScope scope) {
-  std::vector<std::string> keys{"failed", "reason", kRepairGains[0], kRepairGains[1], kDelays[0], kDelays[1]};
-  for (std::size_t text = 0; text < (scope.is_whole ? outcome_text_count() : 1); ++text)
+MethodScores scores_in(const JsonEntry& entry, const CellScores& cell, const Study& study, OutcomeScope scope,
+                       std::size_t texts) {
+  std::vector<std::string> keys{"failed", "reason", kReliability, kDelays[0], kDelays[1]};
+  for (const KeptMean& mean : kMeans)
+    keys.emplace_back(mean.name);
+  for (std::size_t text = 0; text < texts; ++text)
     keys.push_back(outcome_key(text));
   for (const auto& [key, flag] : kThresholdFlags) {
     keys.emplace_back(key);
@@ -263,9 +317,12 @@ MethodScores scores_in(const JsonEntry& entry, const CellScores& cell, const Stu
     scores.failed = entry.at("failed").whole(0, std::count(outcomes.begin(), outcomes.end(), LoopOutcome{}));
   if (entry.has("reason"))
     scores.reason = words_in(entry.at("reason"));
-  for (const char* const name : kRepairGains)
-    if (entry.has(name))
-      scores.estimates[name] = gain_in(entry.at(name), cell, study.aggregate.confidence);
+  for (const KeptMean& mean : kMeans)
+    if (entry.has(mean.name))
+      scores.estimates[mean.name] =
+          mean_in(entry.at(mean.name), mean, cell, outcomes, study.aggregate.confidence);
+  if (entry.has(kReliability))
+    scores.reliability = reliability_in(entry.at(kReliability), scores.estimates["log_score"].count);
   for (const char* const name : kDelays)
     if (entry.has(name))
       scores.estimates[name] = delay_in(entry.at(name), study, cell.truths.size());
@@ -275,9 +332,11 @@ MethodScores scores_in(const JsonEntry& entry, const CellScores& cell, const Stu
 struct BoardMethod {
   std::string name;
   OutcomeScope scope;
+  std::size_t texts;  ///< of its outcomes
 };
 
-std::vector<BoardMethod> methods_in(const JsonEntry& entry, bool is_whole) {
+/// `texts`: how many the file has of each.
+std::vector<BoardMethod> methods_in(const JsonEntry& entry, std::int64_t texts) {
   std::vector<BoardMethod> methods;
   for (const JsonEntry& method : entry.list()) {
     method.require_keys({"name", "cv", "source"});
@@ -289,7 +348,9 @@ std::vector<BoardMethod> methods_in(const JsonEntry& entry, bool is_whole) {
     methods.push_back({name,
                        {.locates_cvs = method.at("cv").flag(),
                         .tells_sources = method.at("source").flag(),
-                        .is_whole = is_whole}});
+                        .is_whole = texts >= kTextsOfQuestions,
+                        .is_told = texts > kTextsOfQuestions},
+                       static_cast<std::size_t>(texts)});
   }
   entry.require(!methods.empty(), "at least one method");
   return methods;
@@ -300,11 +361,13 @@ void read_loops(const JsonEntry& entry, const DrawnLoops& drawn, CellScores& cel
   const std::size_t loops = drawn.truths.size();
   const std::string letters = letters_in(entry.at("truths"), loops);
   for (std::size_t loop = 0; loop < loops; ++loop) {
-    const std::optional<FaultTruth> truth = fault_truth(letters[loop]);
+    std::optional<FaultTruth> truth = fault_truth(letters[loop]);
     if (letters[loop] != kNoLoop &&
         !(truth && truth->kind == drawn.truths[loop].kind && truth->one_cv == drawn.truths[loop].one_cv))
       refuse_letter(entry.at("truths"), loop, letters[loop],
                     "a letter of the fault that the suite draws for the loop");
+    if (truth)
+      truth->about = drawn.truths[loop].about;
     cell.truths.push_back(truth);
   }
   const auto unseen = std::count(cell.truths.begin(), cell.truths.end(), std::nullopt);
@@ -362,7 +425,8 @@ CellScores cell_in(const JsonEntry& entry, const SuiteCell& of, const std::vecto
     names.push_back(method.name);
   entry.at("methods").require_keys(names);
   for (const BoardMethod& method : methods)
-    cell.methods.push_back(scores_in(entry.at("methods").at(method.name), cell, of.study, method.scope));
+    cell.methods.push_back(
+        scores_in(entry.at("methods").at(method.name), cell, of.study, method.scope, method.texts));
   return cell;
 }
 
@@ -414,9 +478,11 @@ FinishedBoard board_in(const JsonEntry& entry, const Suite& suite) {
   entry.at("seed").require(static_cast<std::uint64_t>(entry.at("seed").whole()) == suite.seed,
                            fmt::to_string(suite.seed));
   FinishedBoard board{words_in(entry.at("mpmbench_version")), words_in(entry.at("revision"))};
-  const auto texts = static_cast<std::int64_t>(outcome_text_count());
-  const bool is_whole = entry.has("outcome_texts") && entry.at("outcome_texts").whole(1, texts) == texts;
-  const std::vector<BoardMethod> methods = methods_in(entry.at("methods"), is_whole);
+  const std::int64_t texts =
+      entry.has("outcome_texts")
+          ? entry.at("outcome_texts").whole(1, static_cast<std::int64_t>(outcome_text_count()))
+          : 1;
+  const std::vector<BoardMethod> methods = methods_in(entry.at("methods"), texts);
   for (const BoardMethod& method : methods)
     board.methods.push_back(method.name);
   for (const JsonEntry& cell : entry.at("cells").list()) {
@@ -448,7 +514,7 @@ std::string board_text(const Suite& suite, const Leaderboard& board, const std::
                        {"seed", board.seed},
                        {"mpmbench_version", board.program},
                        {"revision", revision},
-                       {"outcome_texts", outcome_text_count()}};
+                       {"outcome_texts", known_texts(board)}};
   std::string text = "{\n";
   for (const auto& [key, value] : head.items())
     text += fmt::format("\"{}\": {},\n", key, value.dump());

@@ -297,12 +297,14 @@ Document leaderboard_document(const Leaderboard& board) {
   Section by_plant =
       scores_section(board, "by-plant", "By plant, pooled over the families", board.plants, board.by_plant);
   by_plant.shown = Shown::page;
-  for (Section section : {standing_section(board), questions_section(board), information_section(board),
-                          std::move(figure), ranking_section(board), passed_section(board),
-                          scores_section(board, "by-family", "By family, pooled over the plants",
-                                         board.families, board.by_family),
-                          std::move(by_plant), delays_section(board), reference_section(board),
-                          silences_section(board), cells_section(board)})
+  for (Section section :
+       {standing_section(board), questions_section(board), information_section(board),
+        probabilities_section(board), probabilities_by_family_section(board), confusions_section(board),
+        std::move(figure), ranking_section(board), passed_section(board),
+        scores_section(board, "by-family", "By family, pooled over the plants", board.families,
+                       board.by_family),
+        std::move(by_plant), delays_section(board), reference_section(board), silences_section(board),
+        cells_section(board)})
     if (!section.content.empty())
       document.sections.push_back(std::move(section));
   return document;

@@ -5,6 +5,8 @@
 
 #include "analysis/findings/leaderboard_standing.hpp"
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/findings/source_confusions.hpp"
+#include "analysis/findings/source_forecast.hpp"
 #include "results/document/words.hpp"
 #include "results/files/utf8.hpp"
 #include "results/suite/board_columns.hpp"
@@ -26,6 +28,47 @@ SuiteJson axis_json(const std::vector<SuiteAxis>& axis) {
 /// Can a board have the number? Those of worlds stand in the boards of worlds alone.
 bool has_number(const Leaderboard& board, StudyFeature of) {
   return board.in_worlds() || (of != StudyFeature::worlds && of != StudyFeature::calibrated_worlds);
+}
+
+/// The bins that hold a loop.
+SuiteJson reliability_json(const Leaderboard& board, const Reliability& reliability) {
+  SuiteJson bins = SuiteJson::array();
+  for (const Reliability::Bin& bin : reliability.bins())
+    if (bin.count > 0) {
+      SuiteJson json = rate_json(rate(bin.right, bin.count, board.confidence));
+      json["stated"] = bin.stated / static_cast<double>(bin.count);
+      bins.push_back(std::move(json));
+    }
+  return bins;
+}
+
+/// Rows with a loop, and every answer.
+SuiteJson confusions_json(const SourceConfusions& confusions) {
+  SuiteJson json = SuiteJson::object();
+  for (const ToldSource truth : enumerators<ToldSource>())
+    if (confusions.of(truth) > 0)
+      for (const LoopAnswer answer : enumerators<LoopAnswer>())
+        json[std::string(to_string(truth))][std::string(to_string(answer))] = confusions.of(truth, answer);
+  return json;
+}
+
+/// The forecast of frequencies, and what methods gain over it.
+SuiteJson forecast_json(const Leaderboard& board, const SourceProbabilities& frequencies) {
+  SuiteJson json;
+  for (std::size_t i = 0; i < frequencies.size(); ++i)
+    json["frequencies"][std::string(kWords<FaultSource>[i])] = frequencies[i];
+  const ForecastScores scores = frequency_scores(board, [](const CellScores&) { return true; });
+  json["log_score"] = scores.log_score;
+  json["brier_score"] = scores.brier_score;
+  json["count"] = scores.loops;
+  json["skill"] = SuiteJson::object();
+  for (std::size_t method = 0; method < board.methods.size(); ++method)
+    if (states_probabilities(board, method)) {
+      const ForecastSkill skill = forecast_skill(board, method);
+      json["skill"][board.methods[method]] = {{"log_score", skill.log_score},
+                                              {"brier_score", skill.brier_score}};
+    }
+  return json;
 }
 
 SuiteJson scores_json(const Leaderboard& board, const PooledScores& scores) {
@@ -51,6 +94,13 @@ SuiteJson scores_json(const Leaderboard& board, const PooledScores& scores) {
   if (board.in_worlds())
     for (const char* const name : {"repair_gain_share", "repair_gain_share_05"})
       json["estimates"][name] = estimate_json(scores.estimates[name]);
+  if (scores.reliability.count() > 0) {
+    for (const std::string_view name : probability_scores())
+      json["estimates"][std::string(name)] = estimate_json(scores.estimates[name]);
+    json["reliability"] = reliability_json(board, scores.reliability);
+  }
+  if (scores.confusions.total() > 0)
+    json["confusions"] = confusions_json(scores.confusions);
   return json;
 }
 
@@ -196,6 +246,8 @@ std::string leaderboard_json(const Leaderboard& board) {
     json["ranking"] = ranking_json(board);
     json["questions"] = questions_json(board);
   }
+  if (const auto frequencies = source_frequencies(board); frequencies && !stating_methods(board).empty())
+    json["forecast"] = forecast_json(board, *frequencies);
   if (!information_pairs(board).empty())
     json["information"] = information_json(board);
   if (!board.finished_by.empty())

@@ -44,6 +44,20 @@ std::vector<std::string_view> question_rates();
 /// outside of worlds.
 Section questions_section(const Leaderboard& board);
 
+/// The scores of stated probabilities, estimates of a method.
+std::vector<std::string_view> probability_scores();
+
+/// The methods that state probabilities, by their logarithmic score, the best first.
+std::vector<std::size_t> stating_methods(const Leaderboard& board);
+
+/// The scores of stated probabilities against the frequencies of the suite, with reliability diagrams, and
+/// the same by family; no content where nobody states any.
+Section probabilities_section(const Leaderboard& board);
+Section probabilities_by_family_section(const Leaderboard& board);
+
+/// A table of confusions a method; no content of boards that do not keep what was answered.
+Section confusions_section(const Leaderboard& board);
+
 /// "~" for a method that gives verdicts on a part of the loops; otherwise empty. It stands at each number.
 const char* part_mark(const PooledScores& scores);
 

@@ -20,7 +20,7 @@ TYPES = {"int8": "int8", "int32": "int32", "int64": "int64", "uint64": "uint64",
 # What any group of a method may have; its other variables are numbers of its own.
 COMMON_OF_METHODS = {"experiment", "reason", "cv", "mv", "cv_flagged", "cv_score", "cv_source", "channel_flagged",
                      "mismatch_parameter", "mismatch_size", "mismatch_lower", "mismatch_upper", "mismatch_bound",
-                     "named_candidate", "window", "window_end", "window_flagged", "window_score"}
+                     "named_candidate", "told_source", "window", "window_end", "window_flagged", "window_score"}
 METHODS = {"methods, common", "methods, own", "methods, named scenarios"}
 # Two studies whose archives have every variable: a random one and one of named scenarios, on the plant of STUDY under
 # units that stand for those of any plant.

@@ -366,6 +366,30 @@ class Boards(unittest.TestCase):
         self.assertGreater(alike.loc["exact", "background"], 0.95)
         self.assertLess(alike.loc["worlds", "drift"], 0.7)
 
+    def test_stated_probabilities_and_what_is_taken_for_what(self):
+        @mpmbench.method(answers=["cv", "source", "probabilities"])
+        def valves(loop):
+            return {"flagged": True, "cv": loop.cvs[0], "source": "valve", "probabilities": {"mpm": 0.75, "other": 0.25}}
+
+        board = mpmbench.suite("exact", valves, methods="sse,likelihood", plants=[STUDY], families=["classic", "other"],
+                               experiments=8, quiet=True)
+        said = board.confusions("valves")
+        loops = sum(cell["experiments"] for cell in board.json["cells"])
+        self.assertEqual((said["valve"].sum(), said.to_numpy().sum()), (loops, loops))
+        self.assertEqual(board.confusions("sse").to_numpy().sum(), loops)
+        self.assertTrue(set(board.confusions("valves", "other").index) <= {"none", "sensor", "valve", "other"})
+        bins = board.reliability
+        self.assertEqual(set(bins.index.get_level_values("method")), {"valves", "likelihood"})
+        ours = bins.loc["valves"].iloc[0]
+        self.assertEqual((ours["stated"], ours["total"], ours["hits"]), (0.75, loops, said.loc["mpm"].sum()))
+        self.assertEqual(len(board.plot_reliability().axes), 2)
+        self.assertTrue(board.rank("log_score")["value"].is_monotonic_increasing)
+        forecast = board.json["forecast"]
+        self.assertAlmostEqual(forecast["skill"]["valves"]["brier_score"],
+                               1 - board.rates.loc["valves", "brier_score"] / forecast["brier_score"])
+        with self.assertRaisesRegex(KeyError, "found 'nobody'; allowed: sse, likelihood, valves"):
+            board.confusions("nobody")
+
     def test_a_method_joins_a_finished_board(self):
         words_of = {"plants": "wood-berry", "families": "exact", "quiet": True}
         finished = mpmbench.board("quick", plants="wood-berry", families="exact", highlight="sse")

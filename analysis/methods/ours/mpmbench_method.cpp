@@ -4,12 +4,15 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/counterfactual_loop.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/model_errors.hpp"
+#include "analysis/methods/source_probabilities.hpp"
 
 namespace mpm {
 namespace {
@@ -44,6 +47,10 @@ enum class WithoutPart : std::int8_t { none, order, likelihood, other, quiet };
 /// Which channel, which parameter, how large, or which valve? `likelihood`, where the source is a mismatch,
 /// or a valve that sticks.
 ///
+/// How probable? The posterior of `likelihood`, whatever the loop costs. Where the verdict overrules it, the
+/// probabilities of its likeliest source and of the one that is named change places; where the data cannot
+/// tell, mismatch and disturbance have half of their sum each.
+///
 /// docs/methods.md has the figures from which the choice was made.
 class Mpmbench final : public AssessmentMethod {
  public:
@@ -64,6 +71,8 @@ class Mpmbench final : public AssessmentMethod {
     if (assessment.status == AssessmentStatus::ok && !assessment.flagged && learnt_ &&
         without_ != WithoutPart::quiet)
       name_without_impact(loop, assessment);
+    if (assessment.status == AssessmentStatus::ok)
+      state_probabilities(asked(*posterior_, WithoutPart::likelihood, loop), assessment);
     return assessment;
   }
 
@@ -76,6 +85,30 @@ class Mpmbench final : public AssessmentMethod {
     assessment.cvs = posterior.cvs;
     for (CvAssessment& cv : assessment.cvs)
       cv.flagged = false;
+  }
+
+  static void state_probabilities(const Assessment& posterior, Assessment& assessment) {
+    if (posterior.status != AssessmentStatus::ok)
+      return;
+    SourceProbabilities p;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      p[i] = posterior.number(source_probability_numbers()[i].name);
+    if (const std::optional<Eigen::Index> worst = assessment.worst_cv(); assessment.flagged && worst) {
+      const auto cv = static_cast<std::size_t>(*worst);
+      const FaultSource named = assessment.cvs[cv].source;
+      if (named == FaultSource::none)
+        share_between_mismatch_and_disturbance(p);
+      else if (!posterior.flagged || named != posterior.cvs[cv].source)
+        std::swap(p[static_cast<std::size_t>(named)], *std::max_element(p.begin(), p.end()));
+    }
+    for (std::size_t i = 0; i < p.size(); ++i)
+      assessment.numbers.push_back({source_probability_numbers()[i].name, p[i]});
+  }
+
+  static void share_between_mismatch_and_disturbance(SourceProbabilities& p) {
+    double &mpm = p[static_cast<std::size_t>(FaultSource::mpm)],
+           &ud = p[static_cast<std::size_t>(FaultSource::ud)];
+    mpm = ud = (mpm + ud) / 2.0;
   }
 
   /// What a method says of the loop; nothing where the variant does without it.
@@ -112,8 +145,11 @@ class Mpmbench final : public AssessmentMethod {
       return;
     const FaultSource source = agreed_source(posterior, order, *worst);
     assessment.cvs[static_cast<std::size_t>(*worst)].source = source;
-    if (const double valve = posterior.number("valve_mv"); source == FaultSource::other && !std::isnan(valve))
+    if (const double valve = posterior.number("valve_mv");
+        source == FaultSource::other && !std::isnan(valve)) {
+      assessment.cvs[static_cast<std::size_t>(*worst)].about = ToldSource::valve;
       assessment.numbers.push_back({"valve_mv", valve});
+    }
     if (posterior.status != AssessmentStatus::ok ||
         (source != FaultSource::mpm && source != FaultSource::mpm_ud))
       return;
@@ -166,6 +202,12 @@ class Mpmbench final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo mpmbench_method() {
+  std::vector<AssessmentNumberInfo> numbers{
+      {"ivar", NumberScope::cv, "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise", "1",
+       NumberFinding::regression},
+      {"valve_mv", NumberScope::loop,
+       "place of the MV whose valve sticks, from 0; none: the source is not a valve"}};
+  numbers.insert(numbers.end(), source_probability_numbers().begin(), source_probability_numbers().end());
   const auto make_without = [](WithoutPart part) -> AssessmentMethodInfo::Make {
     return [part](const AssessmentContext& context) { return std::make_unique<Mpmbench>(context, part); };
   };
@@ -180,11 +222,7 @@ AssessmentMethodInfo mpmbench_method() {
        .tells_sources = true,
        .names_mismatches = true,
        .information = ModelInformation::learnt,
-       .numbers = {{"ivar", NumberScope::cv,
-                    "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise", "1",
-                    NumberFinding::regression},
-                   {"valve_mv", NumberScope::loop,
-                    "place of the MV whose valve sticks, from 0; none: the source is not a valve"}}},
+       .numbers = std::move(numbers)},
       {},
       make_without(WithoutPart::none),
       {},

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <memory>
 #include <string>
 #include <tuple>
 
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/methods/assessment_record.hpp"
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
@@ -209,6 +211,27 @@ TEST_CASE("method messages: what the description does not announce is refused") 
     CHECK_THAT(said,
                Catch::EndsWith(fmt::format("nothing: the method does not say that it answers '{}'", word)));
   }
+}
+
+TEST_CASE("method messages: another fault is told with what it is about, and comes back", "[confusions]") {
+  const MethodDescription method = answering_all();
+  for (const ToldSource told : enumerators<ToldSource>()) {
+    const Assessment said =
+        answer_of(fmt::format(R"({{"flagged": true, "cv": "y1", "source": "{}"}})", to_string(told)));
+    INFO(to_string(told));
+    CHECK(said.cvs[0].source == source_of(told));
+    CHECK(told_source(said.cvs[0].source, said.cvs[0].about) == told);
+    const MessageJson json = answer_json(said, seven_by_three(), method);
+    CHECK(json.at("cv_source")[0] == to_string(told));
+    const Assessment again = assessment_of(json, seven_by_three(), method, "method 'mine'");
+    CHECK(told_source(again.cvs[0].source, again.cvs[0].about) == told);
+    const auto form = assessment_forms(find_study("chapter6"), {"likelihood"}).front();
+    CHECK(kept(form, said).told() == told);
+    const auto of_old_archive = std::make_shared<const AssessmentForm>(method, find_study("chapter6"));
+    CHECK(kept(of_old_archive, said).told() == told_source(source_of(told)));
+  }
+  CHECK(message_refusal(R"({"flagged": true, "cv": "y1", "source": "pump"})")
+            .find("none, mpm, ud, mpm_ud, other, sensor, valve, data") != std::string::npos);
 }
 
 }  // namespace mpm

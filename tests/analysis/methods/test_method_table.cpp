@@ -86,10 +86,10 @@ TEST_CASE("every method describes itself, and each of its numbers once") {
       for (const AssessmentNumberInfo& number : method.scenario_numbers())
         numbers.push_back(number);
     // The names that every method has for what it tells.
-    std::set<std::string> of_method{
-        "cv_flagged",         "cv_score",        "cv_source",      "channel_flagged",
-        "mismatch_parameter", "mismatch_size",   "mismatch_lower", "mismatch_upper",
-        "mismatch_bound",     "named_candidate", "reason"};
+    std::set<std::string> of_method{"cv_flagged",      "cv_score",           "cv_source",
+                                    "channel_flagged", "mismatch_parameter", "mismatch_size",
+                                    "mismatch_lower",  "mismatch_upper",     "mismatch_bound",
+                                    "named_candidate", "told_source",        "reason"};
     for (const AssessmentNumberInfo& number : numbers) {
       INFO(number.name);
       CHECK(of_method.insert(number.name).second);

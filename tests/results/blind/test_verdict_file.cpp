@@ -127,7 +127,7 @@ TEST_CASE("verdict file: each line is kept with the record of its loop; one with
   const OutsideVerdicts read =
       verdicts_in(campaign, with_hash(false,
                                       "loop,flagged,score,cv,source,channels,parameter,size,candidate,error\n"
-                                      "2,yes,7.5,y3,other,y3/u1 y1/u2,gain,1.25,2,\n"
+                                      "2,yes,7.5,y3,valve,y3/u1 y1/u2,gain,1.25,2,\n"
                                       "# a comment, and an empty line\n\n"
                                       "0,0,-inf,,,,,,,\n"
                                       "1,,,,,,,,,\"no, \"\"not\"\" this one\"\n"));
@@ -140,6 +140,7 @@ TEST_CASE("verdict file: each line is kept with the record of its loop; one with
   const auto answer = [&](std::size_t loop) { return read.answers[order[loop].place]; };
   CHECK((answer(2).flagged && answer(2).score == 7.5 && answer(2).predicted_cv == 2));
   CHECK(answer(2).predicted_source == FaultSource::other);
+  CHECK(answer(2).told() == ToldSource::valve);
   CHECK((answer(2).names({2, 0}) && answer(2).names({0, 1}) && !answer(2).names({0, 0})));
   CHECK(answer(2).named_mismatch()->size == 1.25);
   CHECK(answer(2).number("named_candidate") == 1.0);  // numbers in files begin with 1, positions with 0
@@ -249,8 +250,10 @@ TEST_CASE("verdict file: every kind of line that is no verdict is refused by lin
   CHECK_THAT(line("0,,perhaps,,,,,,\n"), StartsWith("mine.csv:2: flagged: found 'perhaps'; allowed: 1, 0"));
   CHECK_THAT(line("0,,1,high,,,,,\n"), StartsWith("mine.csv:2: score: found 'high'; allowed: a number"));
   CHECK_THAT(line("0,,1,,y9,,,,\n"), StartsWith("mine.csv:2: cv: found \"y9\"; allowed: y1, y2"));
-  CHECK_THAT(line("0,,1,,y1,tea,,,\n"),
-             StartsWith("mine.csv:2: source: found \"tea\"; allowed: none, mpm, ud, mpm_ud, other"));
+  CHECK_THAT(
+      line("0,,1,,y1,tea,,,\n"),
+      StartsWith(
+          "mine.csv:2: source: found \"tea\"; allowed: none, mpm, ud, mpm_ud, other, sensor, valve, data"));
   CHECK_THAT(line("0,,1,,,mpm,,,\n"),
              StartsWith("mine.csv:2: source: found \"mpm\"; allowed: none, or the CV"));
   CHECK_THAT(line("0,,1,,,,y1,,\n"), StartsWith("mine.csv:2: channels: found 'y1'; allowed: channels CV/MV"));

@@ -137,7 +137,7 @@ Campaign hostile_campaign(char first) {
 
 Leaderboard hostile_board(char first) {
   const std::string text = hostile(first);
-  constexpr OutcomeScope kScope{.locates_cvs = true, .tells_sources = true, .at_05 = true};
+  constexpr OutcomeScope kScope{.locates_cvs = true, .tells_sources = true, .at_05 = true, .is_told = true};
   CellScores cell{.time_unit = text,
                   .monitored = true,
                   .experiments = 4,
@@ -148,6 +148,7 @@ Leaderboard hostile_board(char first) {
        {LoopOutcome{.answered = true, .flagged = true, .above_05 = true}, LoopOutcome{}}) {
     cell.methods.push_back(scores_of_outcomes(cell, LoopOutcomes(4, said), kScope));
     cell.methods.back().reason = text;
+    cell.methods.back().reliability.add({0.1, 0.9, 0.0, 0.0, 0.0}, FaultSource::mpm);
   }
   Suite suite;
   suite.name = suite.version = suite.title = text;

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "results/suite/board_file.hpp"
+#include "results/suite/board_letters.hpp"
 #include "tests/results/made_up_campaign.hpp"
 
 namespace {
@@ -59,6 +60,94 @@ TEST_CASE("board file: the shipped board is read, and failures of methods are ke
   CHECK(board.cells[1].methods[static_cast<std::size_t>(sse)].failed == 0);
   const Leaderboard shown = leaderboard_of(quick(), board);
   CHECK_THAT(board_text(quick(), shown, "r"), Contains("\"failed\":1"));
+}
+
+TEST_CASE("board file: stated probabilities and told sources are kept, and older files are read without them",
+          "[suite]") {
+  const FinishedBoard old = read_changed([](FileJson&) {});
+  const Leaderboard shown = leaderboard_of(quick(), old);
+  const FileJson kept = FileJson::parse(board_text(quick(), shown, "r"));
+  CHECK(kept["outcome_texts"] == 1);  // of what was read no more is known
+  CHECK(shown.overall[0].confusions.total() == 0);
+  CHECK(shown.overall[0].reliability.count() == 0);
+
+  // A method that names a valve in each loop, as it stands in a file of today, and its probabilities.
+  const auto change = [](FileJson& json) {
+    json["outcome_texts"] = outcome_text_count();
+    json["methods"] = {{{"name", "mine"}, {"cv", true}, {"source", true}}};
+    for (FileJson& cell : json["cells"]) {
+      const std::string truths = cell["truths"];
+      std::string facts(truths.size(), '-'), second = facts, told = facts, none = facts;
+      std::int64_t loops = 0, of_world = 0;
+      FileJson sums = FileJson::array({{0.0, 0}});
+      for (std::size_t i = 0; i < truths.size(); ++i)
+        if (truths[i] != '-') {
+          const bool is_other = fault_truth(truths[i])->kind == ExperimentKind::other;
+          const LoopOutcome said{.answered = true,
+                                 .flagged = true,
+                                 .right_source = is_other,
+                                 .names_source = true,
+                                 .told = ToldSource::valve};
+          const std::vector<std::string> letters = outcome_letters({said});
+          facts[i] = letters[0][0];
+          second[i] = letters[1][0];
+          told[i] = letters.back()[0];
+          none[i] = 'A';
+          ++loops;
+          const auto world = static_cast<std::size_t>(cell["worlds"][i].get<int>() + 1);
+          while (sums.size() <= world)
+            sums.push_back({0.0, 0});
+          sums[world] = {0.5 * (sums[world][1].get<double>() + 1.0), sums[world][1].get<int>() + 1};
+          ++of_world;
+        }
+      FileJson of_method{{"outcomes", facts}, {"outcomes_2", second}, {"outcomes_6", told}};
+      of_method["log_score"] = of_method["brier_score"] = sums;
+      for (int bin = 0; bin < 10; ++bin)
+        of_method["reliability"].push_back({bin == 7 ? 0.75 * static_cast<double>(loops) : 0.0,
+                                            bin == 7 ? loops : 0, bin == 7 ? loops / 2 : 0});
+      cell["methods"] = {{"mine", of_method}};
+    }
+  };
+  const Leaderboard board = leaderboard_of(quick(), read_changed(change));
+  const PooledScores& mine = board.overall[0];
+  CHECK(mine.confusions.total() == mine["answered"].total);
+  CHECK(mine.confusions.of(LoopAnswer::valve) == mine["answered"].total);
+  CHECK(mine.reliability.count() == mine["answered"].total);
+  CHECK(mine.estimates["log_score"].value == Approx(0.5));
+  CHECK(mine.estimates["calibration_error"].value == Approx(0.25).margin(0.02));
+  const FileJson again = FileJson::parse(board_text(quick(), board, "r"));
+  FileJson given = again;
+  change(given);
+  CHECK(again["cells"][0]["methods"]["mine"]["reliability"] ==
+        given["cells"][0]["methods"]["mine"]["reliability"]);
+  CHECK(again["cells"][0]["methods"]["mine"]["outcomes_6"] ==
+        given["cells"][0]["methods"]["mine"]["outcomes_6"]);
+
+  const auto refused = [&](auto damage) {
+    return [&change, damage](FileJson& json) {
+      change(json);
+      damage(json["cells"][0]["methods"]["mine"]);
+    };
+  };
+  const std::vector<std::pair<std::function<void(FileJson&)>, std::string>> damages{
+      {[](FileJson& of) { of["reliability"].erase(0); }, "mine: reliability: found a list of 9"},
+      {[](FileJson& of) { of["reliability"][7][2] = 99; }, "mine: reliability[7][2]: found 99"},
+      {[](FileJson& of) { of["reliability"][7][0] = 1.0; }, "mine: reliability[7][0]: found 1"},
+      {[](FileJson& of) {
+         of["reliability"][7] = {0.0, 0, 0};
+       },
+       "mine: reliability: found"},
+      {[](FileJson& of) {
+         of["log_score"][1] = {9.0, 9};
+       },
+       "mine: log_score[1][1]: found 9"},
+      {[](FileJson& of) { of.erase("log_score"); }, "mine: reliability"},
+      // A source of a loop that the facts call right or none otherwise.
+      {[](FileJson& of) { of["outcomes_6"] = std::string(24, 'B'); }, "mine: outcomes, loop 0: found"}};
+  for (const auto& [damage, said] : damages) {
+    CAPTURE(said);
+    CHECK_THROWS_WITH(read_changed(refused(damage)), Contains(said));
+  }
 }
 
 TEST_CASE("board file: names follow the rule of method files", "[suite]") {

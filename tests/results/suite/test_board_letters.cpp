@@ -28,7 +28,10 @@ TEST_CASE("board letters: every outcome comes back from its letters, and other c
           "[suite]") {
   LoopOutcomes outcomes{LoopOutcome{}, std::nullopt};
   for (const OutcomeFact& fact : outcome_facts())
-    for (unsigned number = 1; number < (fact.bits == 1 ? 2U : 3U); ++number) {
+    for (unsigned number = 1; number < (fact.bits == 1   ? 2U
+                                        : fact.bits == 2 ? 3U
+                                                         : 1U << fact.bits);
+         ++number) {
       LoopOutcome outcome{.answered = true};
       fact.set(outcome, number);
       outcomes.emplace_back(outcome);

@@ -8,6 +8,7 @@
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
 #include "scenarios/faults/other_fault.hpp"
+#include "scenarios/faults/told_source.hpp"
 #include "scenarios/faults/valve_stem.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
@@ -254,6 +255,19 @@ TEST_CASE("other faults: what a loop cannot have is never drawn, everything else
   const auto weights = other_weights(setpoints);
   for (const OtherFaultKind kind : {OtherFaultKind::md_gain, OtherFaultKind::md_noise, OtherFaultKind::limit})
     CHECK(weights[static_cast<std::size_t>(kind)] == 0.0);
+}
+
+TEST_CASE("other faults: each is about a sensor, a valve or something else, and told so", "[other]") {
+  for (const OtherFaultKind kind : kOtherFaultKinds) {
+    const OtherFaultInfo& info = info_of(kind);
+    const ToldSource told = told_source(OtherFault{kind, 0});
+    INFO(to_string(kind));
+    CHECK((told == ToldSource::valve) == (info.stem != nullptr));
+    CHECK((told == ToldSource::other) == (kind == OtherFaultKind::limit || kind == OtherFaultKind::held_mv));
+    CHECK(source_of(told) == FaultSource::other);
+  }
+  for (const FaultSource source : enumerators<FaultSource>())
+    CHECK(to_string(told_source(source)) == to_string(source));
 }
 
 }  // namespace

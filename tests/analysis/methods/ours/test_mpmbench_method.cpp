@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include <catch2/catch.hpp>
@@ -6,6 +9,7 @@
 #include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
+#include "analysis/methods/source_probabilities.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
@@ -82,6 +86,40 @@ TEST_CASE("mpmbench: where the likelihood sees both faults, the order test says 
     CHECK(source(alone, draw) == FaultSource::mpm_ud);
     CHECK(source(together, draw) == truth);
   }
+}
+
+TEST_CASE(
+    "mpmbench: it states probabilities of every loop, and the likeliest source is the one that it names",
+    "[probabilities]") {
+  const MpmbenchCase chapter6;
+  Assessor together(assessment_method("mpmbench"), chapter6.context);
+  Assessor alone(assessment_method("likelihood"), chapter6.context);
+  const Mismatch mismatch{4, 0, MismatchParameter::gain, 0.5};
+  Disturbance oscillation{4, 1.2, 60.0};
+  oscillation.signal = Sine{.amplitude = 0.4, .period = 200.0};
+  const auto stated = [](const Assessment& said) {
+    SourceProbabilities p;
+    for (std::size_t i = 0; i < p.size(); ++i)
+      p[i] = said.number(source_probability_numbers()[i].name);
+    return p;
+  };
+  for (const auto& [draw, named] : {std::pair{draw_with({}, {}), FaultSource::none},
+                                    std::pair{draw_with({mismatch}, {}), FaultSource::mpm},
+                                    std::pair{draw_with({}, {oscillation}), FaultSource::ud}}) {
+    const AssessedLoop loop = chapter6.loop_of(draw);
+    const SourceProbabilities p = stated(together.assess(loop)), of_likelihood = stated(alone.assess(loop));
+    CHECK(std::accumulate(p.begin(), p.end(), 0.0) == Approx(1.0));
+    CHECK(std::max_element(p.begin(), p.end()) - p.begin() == static_cast<std::ptrdiff_t>(named));
+    // The same numbers as those of the likelihood, which took the oscillation for both faults.
+    SourceProbabilities sorted = p, sorted_of_likelihood = of_likelihood;
+    std::sort(sorted.begin(), sorted.end());
+    std::sort(sorted_of_likelihood.begin(), sorted_of_likelihood.end());
+    CHECK(sorted == sorted_of_likelihood);
+    CHECK((p == of_likelihood) == (named != FaultSource::ud));
+  }
+  CHECK(states_probabilities(assessment_method("mpmbench")));
+  Assessor without(shipped_methods().method("mpmbench:without-likelihood"), chapter6.context);
+  CHECK(std::isnan(without.assess(chapter6.loop_of(draw_with({mismatch}, {}))).number("p_mpm")));
 }
 
 TEST_CASE("mpmbench: what costs nothing is not flagged, and no source is named") {

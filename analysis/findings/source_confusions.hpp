@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "analysis/findings/loop_outcome.hpp"
+#include "base/enum_words.hpp"
+#include "scenarios/faults/told_source.hpp"
+
+// What is true of loops against what a method answers about them at its own threshold.
+
+namespace mpm {
+
+enum class LoopAnswer : std::int8_t {
+  no_answer = 0,  ///< no verdict
+  none = 1,       ///< not flagged
+  unnamed = 2,    ///< flagged, without a source
+  mpm = 3,        ///< flagged with this source, as all below
+  ud = 4,
+  mpm_ud = 5,
+  other = 6,
+  sensor = 7,
+  valve = 8,
+  data = 9,
+};
+
+template <>
+inline constexpr auto kWords<LoopAnswer> = word_list("no_answer", "none", "unnamed", "mpm", "ud", "mpm_ud",
+                                                     "other", "sensor", "valve", "data");
+
+LoopAnswer loop_answer(const LoopOutcome& said);
+/// The answer that is this truth.
+LoopAnswer right_answer(ToldSource truth);
+
+/// The number of loops of each truth (row) with each answer (column): their sum is that of the loops. Bad
+/// tuning is the truth `none`.
+class SourceConfusions {
+ public:
+  void add(const FaultTruth& truth, const LoopOutcome& said) { ++at(truth.source(), loop_answer(said)); }
+  void add(const SourceConfusions& more);
+
+  std::int64_t of(ToldSource truth, LoopAnswer answer) const;
+  std::int64_t of(ToldSource truth) const;
+  std::int64_t of(LoopAnswer answer) const;
+  std::int64_t total() const;
+
+ private:
+  static constexpr std::size_t kColumns = kWords<LoopAnswer>.size();
+
+  std::int64_t& at(ToldSource truth, LoopAnswer answer) {
+    return counts_[static_cast<std::size_t>(truth)][static_cast<std::size_t>(answer)];
+  }
+
+  std::array<std::array<std::int64_t, kColumns>, kWords<ToldSource>.size()> counts_{};
+};
+
+}  // namespace mpm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+#include "base/enum_words.hpp"
+#include "scenarios/faults/fault.hpp"
+#include "scenarios/faults/other_fault.hpp"
+
+namespace mpm {
+
+/// A source as methods tell it, programs and files of verdicts write it, and tables of confusions count it:
+/// FaultSource, and of `other` what it is about where that is said.
+enum class ToldSource : std::int8_t {
+  none = 0,
+  mpm = 1,
+  ud = 2,
+  mpm_ud = 3,
+  other = 4,   ///< an operator, a limit, or nobody says what
+  sensor = 5,  ///< of a CV or an MD
+  valve = 6,
+  data = 7,  ///< the record is not what was measured
+};
+
+template <>
+inline constexpr auto kWords<ToldSource> = word_list("none", "mpm", "ud", "mpm_ud", "other", "sensor",
+                                                     "valve", "data");
+
+constexpr FaultSource source_of(ToldSource told) {
+  return told > ToldSource::other ? FaultSource::other : static_cast<FaultSource>(told);
+}
+
+/// `about` is of the source `other` alone.
+constexpr ToldSource told_source(FaultSource source, ToldSource about = ToldSource::other) {
+  return source == FaultSource::other ? about : static_cast<ToldSource>(source);
+}
+
+/// What a fault around the model is about.
+ToldSource told_source(const OtherFault& fault);
+
+}  // namespace mpm
