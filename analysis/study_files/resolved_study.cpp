@@ -19,10 +19,11 @@ namespace mpm {
 namespace {
 
 /// A key whose default is what studies without it do. Later ones go to the end.
-constexpr std::array kLaterKeys{
-    "diagnosis.impact",         "other.valve_start",      "other.weights.sensor_stuck",
-    "other.weights.stick_slip", "other.weights.friction", "record.sampling",
-    "record.exception",         "world.valve_curvature",  "world.background.swell"};
+constexpr std::array kLaterKeys{"diagnosis.impact",           "other.valve_start",
+                                "other.weights.sensor_stuck", "other.weights.stick_slip",
+                                "other.weights.friction",     "record.sampling",
+                                "record.exception",           "world.valve_curvature",
+                                "world.background.swell",     "assessment.likelihood.judged"};
 
 TomlDraft resolved_draft(const Study& study) {
   TomlDraft draft(key_names(study_file_keys("")));

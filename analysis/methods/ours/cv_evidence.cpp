@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -94,7 +95,8 @@ class RecordLikelihood {
   RecordLikelihood(const ModelErrors& model, const CvPrior& prior, const ScaleLikelihood& likelihood,
                    bool rest, const std::vector<MismatchResponses>& responses, const Eigen::RowVectorXd& e,
                    const Eigen::Ref<const Eigen::MatrixXd>& u,
-                   const Eigen::Ref<const Eigen::VectorXd>& initial_u, Eigen::MatrixXd slopes)
+                   const Eigen::Ref<const Eigen::VectorXd>& initial_u, Eigen::MatrixXd slopes,
+                   JudgedMismatches judged)
       : model_(model),
         prior_(prior),
         base_(model.noise()),
@@ -105,6 +107,7 @@ class RecordLikelihood {
         u_(u),
         initial_u_(initial_u),
         slopes_(std::move(slopes)),
+        judged_(judged),
         directions_(model.directions(slopes_)) {
     simulate();
   }
@@ -333,31 +336,42 @@ class RecordLikelihood {
     }
   }
 
-  /// The best mismatches under all noises that are possible, the others with what these bring without a
-  /// fault. The sizes of one that is narrow are those under all of these noises.
+  /// The mismatches that are judged under all noises that are possible, the others with what these bring
+  /// `without` a fault. The sizes of one that is narrow are those under all of these noises.
   void count_other_noises(double without, const std::vector<bool>& is_narrow,
                           std::vector<MismatchEvidence>& mismatches) const {
-    double best = -kInfinity;
-    for (const MismatchEvidence& each : mismatches)
-      best = std::max(best, each.best_log_likelihood);
-    for (std::size_t i = 0; i < mismatches.size(); ++i) {
-      const double size = mismatches[i].best_size;
-      if (!(mismatches[i].best_log_likelihood > best - kWorthALook)) {
+    std::vector<std::size_t> order(mismatches.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return mismatches[a].best_log_likelihood > mismatches[b].best_log_likelihood;
+    });
+    const double nearest = order.empty() ? 0.0 : mismatches[order.front()].best_log_likelihood - kWorthALook;
+    double leading = -kInfinity;  // log likelihood of the best so far, under all noises
+    for (const std::size_t i : order) {
+      const double alone = mismatches[i].best_log_likelihood;
+      const bool might_lead = judged_ == JudgedMismatches::all && alone + without > leading - kLost;
+      if (!(alone > nearest) && !might_lead) {
         mismatches[i] = weighed(std::move(mismatches[i]), without);
         continue;
       }
-      MismatchEvidence under_all = nothing_yet();
-      const double gain =
-          gain_of_other_noises(error_and_slope(i, size), directions_with(i, size),
-                               [&](const WeighedModels& noises, const WhitenedProducts& sums) {
-                                 add_sizes(i, size, noises, sums, under_all);
-                               });
-      mismatches[i] = weighed(std::move(mismatches[i]), gain);
-      if (is_narrow[i] && !under_all.sizes.empty()) {
-        const double to_same_mass = mismatches[i].log_evidence - under_all.log_evidence;
-        mismatches[i].sizes = weighed(std::move(under_all), to_same_mass).sizes;
-      }
+      leading = std::max(leading, alone + under_other_noises(is_narrow[i], i, mismatches[i]));
     }
+  }
+
+  /// Judges a mismatch under all noises that are possible; returns what they bring.
+  double under_other_noises(bool is_narrow, std::size_t i, MismatchEvidence& mismatch) const {
+    const double size = mismatch.best_size;
+    MismatchEvidence under_all = nothing_yet();
+    const double gain = gain_of_other_noises(error_and_slope(i, size), directions_with(i, size),
+                                             [&](const WeighedModels& noises, const WhitenedProducts& sums) {
+                                               add_sizes(i, size, noises, sums, under_all);
+                                             });
+    mismatch = weighed(std::move(mismatch), gain);
+    if (is_narrow && !under_all.sizes.empty()) {
+      const double to_same_mass = mismatch.log_evidence - under_all.log_evidence;
+      mismatch.sizes = weighed(std::move(under_all), to_same_mass).sizes;
+    }
+    return gain;
   }
 
   /// Mismatches beside a disturbance. Looked for where a disturbance alone is best, and where the best
@@ -418,7 +432,9 @@ class RecordLikelihood {
   const Eigen::RowVectorXd& e_;
   const Eigen::Ref<const Eigen::MatrixXd>& u_;
   const Eigen::Ref<const Eigen::VectorXd>& initial_u_;
-  Eigen::MatrixXd slopes_, directions_;  ///< of ModelErrors
+  Eigen::MatrixXd slopes_;  ///< of ModelErrors
+  JudgedMismatches judged_;
+  Eigen::MatrixXd directions_;           ///< of ModelErrors
   Eigen::MatrixXd series_;               ///< e, every response on its grid, and the directions
   std::vector<Eigen::Index> first_row_;  ///< of each mismatch in `series_`
 };
@@ -426,8 +442,12 @@ class RecordLikelihood {
 }  // namespace
 
 CvLikelihood::CvLikelihood(ModelErrors model, double sample_time, const CvPrior& prior, double noise_freedom,
-                           bool starts_from_rest)
-    : model_(std::move(model)), prior_(prior), freedom_(noise_freedom), starts_from_rest_(starts_from_rest) {
+                           bool starts_from_rest, JudgedMismatches judged)
+    : model_(std::move(model)),
+      prior_(prior),
+      freedom_(noise_freedom),
+      starts_from_rest_(starts_from_rest),
+      judged_(judged) {
   for (const SizePrior& mismatch : prior.mismatches)
     responses_.emplace_back(model_.model()(0, mismatch.channel.mv), sample_time, mismatch);
 }
@@ -440,7 +460,7 @@ CvEvidence CvLikelihood::of(const Eigen::Ref<const Eigen::RowVectorXd>& e,
   const Eigen::RowVectorXd scaled = (e - model_.correction(inputs, initial)) / base.deviation;
   const auto samples = static_cast<double>((!scaled.array().isNaN()).count());
   return RecordLikelihood(model_, prior_, {freedom_, samples}, starts_from_rest_, responses_, scaled, inputs,
-                          initial, slopes(inputs, initial, untold))
+                          initial, slopes(inputs, initial, untold), judged_)
       .evidence();
 }
 

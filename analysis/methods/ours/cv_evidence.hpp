@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,6 +10,7 @@
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "analysis/methods/ours/model_errors.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
+#include "base/enum_words.hpp"
 
 namespace mpm {
 
@@ -26,6 +28,18 @@ struct CvEvidence {
   std::vector<MismatchEvidence> mismatch_alone, mismatch_with_disturbance;
   double disturbance_a, disturbance_b;  ///< of the best disturbance alone; b in CV units
 };
+
+/// Which mismatches of a CV are judged under every noise that the benchmark leaves possible. Each of the
+/// others gains what these noises bring without a fault. Where a fault is large against the noise that is
+/// more than they bring beside a mismatch that explains most of it, and the gain decides which channel is
+/// named.
+enum class JudgedMismatches : std::int8_t {
+  nearest = 0,  ///< those whose likelihood is within e^2 of the largest one
+  all = 1,      ///< all that might be the likeliest if they gained as much as without a fault
+};
+
+template <>
+inline constexpr auto kWords<JudgedMismatches> = word_list("nearest", "all");
 
 /// The likelihood of the record of one CV. With e = y - y_sim of the CV and u the recorded MVs,
 ///
@@ -45,7 +59,7 @@ class CvLikelihood {
  public:
   /// `prior` must outlive the likelihood.
   CvLikelihood(ModelErrors model, double sample_time, const CvPrior& prior, double noise_freedom,
-               bool starts_from_rest);
+               bool starts_from_rest, JudgedMismatches judged = JudgedMismatches::nearest);
 
   /// `e` (N, CV unit) = y - y_sim of the nominal model: NaN where there is no sample; `inputs` (nu + nd x N)
   /// with `initial` (nu + nd) before it. The rows of `untold` (c x N), AssessedLoop::untold, are in e with
@@ -81,6 +95,7 @@ class CvLikelihood {
   const CvPrior& prior_;
   double freedom_;
   bool starts_from_rest_;
+  JudgedMismatches judged_;
   std::vector<MismatchResponses> responses_;  ///< one a mismatch of the prior
 };
 

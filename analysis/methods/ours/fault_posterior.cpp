@@ -211,9 +211,9 @@ class FaultKnowledge {
     if (priors == FaultPriors::study && !draws_known_faults(study))
       priors_ = for_scores_;
     for (std::size_t cv = 0; cv < models_.size(); ++cv)
-      likelihoods_.push_back(std::make_unique<const CvLikelihood>(models_[cv], study.controller.sample_time,
-                                                                  priors_.cvs[cv], priors_.noise_freedom,
-                                                                  priors_.starts_from_rest));
+      likelihoods_.push_back(std::make_unique<const CvLikelihood>(
+          models_[cv], study.controller.sample_time, priors_.cvs[cv], priors_.noise_freedom,
+          priors_.starts_from_rest, study.assessment.of<LikelihoodOptions>().judged));
   }
   FaultKnowledge(const FaultKnowledge&) = delete;
   FaultKnowledge& operator=(const FaultKnowledge&) = delete;
@@ -399,6 +399,8 @@ class FaultPosterior final : public AssessmentMethod {
       CvAssessment& cv = assessment.cvs[i];
       if (cv.flagged == true || worst == static_cast<Eigen::Index>(i))
         cv.source = most_probable_source(probabilities.cvs[i], options.source_probability);
+      if (cv.source == FaultSource::other)
+        cv.about = ToldSource::valve;  // the only one among its hypotheses
       name_mismatch(i, cv.source, evidence[i], worst == static_cast<Eigen::Index>(i), assessment);
     }
     add_numbers(probabilities, evidence, worst, assessment);

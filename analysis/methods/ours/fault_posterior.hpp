@@ -27,6 +27,7 @@ struct LikelihoodOptions {
   double flag_probability = 0.5;   ///< a loop or a CV is flagged when a fault is more probable than this
   /// A source is named when it is at least so probable, given that there is a fault; 0: always.
   double source_probability = 0.0;
+  JudgedMismatches judged = JudgedMismatches::nearest;
 
   bool operator==(const LikelihoodOptions&) const = default;
 };

@@ -27,7 +27,13 @@ OptionKeys keys(LikelihoodOptions& options) {
       key::number(
           "source_probability", options.source_probability, NumberRule::below_one(),
           "the source of a CV is named when it is at least so probable, given that the CV has a fault. 0: "
-          "the most probable one always, since a source that is not named counts as wrong")};
+          "the most probable one always, since a source that is not named counts as wrong"),
+      key::choice("judged", options.judged,
+                  "mismatches that are judged under every noise that the benchmark leaves possible: the "
+                  "`\"nearest\"` to the likeliest one, the others with what these noises bring without a "
+                  "fault; or `\"all\"` that might be the likeliest, which names the channel better where two "
+                  "inputs move alike and a fault is large against the noise. `\"nearest\"` because the "
+                  "finished boards have it")};
 }
 
 }  // namespace

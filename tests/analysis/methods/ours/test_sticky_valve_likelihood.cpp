@@ -56,6 +56,7 @@ TEST_CASE("the likelihood names a valve that sticks, and only such a one", "[val
       CHECK(answer.number("p_other") > 0.9);
       CHECK(answer.number("valve_mv") == static_cast<double>(mv));
       CHECK(answer.predicted_source == FaultSource::other);
+      CHECK(answer.told() == ToldSource::valve);
       CHECK(answer.number("p_healthy") + answer.number("p_mpm") + answer.number("p_ud") +
                 answer.number("p_both") + answer.number("p_other") ==
             Approx(1.0));
