@@ -34,12 +34,16 @@ Sweep load_sweep(const fs::path& path) {
   const std::string file_name = path.string();
   const toml::table toml = parse_toml(read_toml_file(path, "a sweep file"), file_name);
   const TomlTable document(toml, file_name, {"sweep", "variant"});
-  const TomlTable heading = document.table("sweep", {"name", "title", "study"});
+  const TomlTable heading = document.table("sweep", {"name", "title", "study", "remove", "set"});
   Sweep sweep;
   sweep.name = read_name(heading, "name");
   sweep.title = read_text(heading, "title");
-  sweep.variants.push_back({"", "", read_base_study(heading, path.parent_path())});
-  const toml::table base = parse_toml(sweep.variants.front().study.source, file_name);
+  const Study shipped = read_base_study(heading, path.parent_path());
+  toml::table base = parse_toml(shipped.source, file_name);
+  make_changes(base, heading);
+  const bool is_changed = heading.find("set") != nullptr || heading.find("remove") != nullptr;
+  sweep.variants.push_back({"", "", is_changed ? study_of(base, file_name + " (sweep)") : shipped});
+  trust_programs_of(sweep.variants.front().study);
   for (const TomlTable& variant : document.tables("variant", {"choice", "value", "remove", "set"}))
     sweep.variants.push_back(read_variant(variant, base, file_name));
   return sweep;

@@ -73,6 +73,19 @@ TEST_CASE("a variant is the base study with some keys laid over", "[sweep_file]"
   CHECK(parse_study(variant.source, "variant").simulation.noise_standard_deviation.isZero(0.0));
 }
 
+TEST_CASE("the base study of a sweep may be changed for all of its lines", "[sweep_file]") {
+  const SweepFolder folder("set.study.seed = 99\nremove = [\"simulation.step\"]\n" + kVariant +
+                           "set.simulation.noise_standard_deviation = 0.0\n");
+  const Sweep sweep = load_sweep(folder.file());
+  for (const SweepVariant& variant : sweep.variants) {
+    CHECK(variant.study.seed == 99);
+    CHECK(variant.study.simulation.steps.empty());
+  }
+  CHECK_FALSE(sweep.variants[0].study.simulation.noise_standard_deviation.isZero(0.0));
+  CHECK(sweep_refusal("remove = [\"simulation.steps\"]\n").find("keys that the base study has") !=
+        std::string::npos);
+}
+
 TEST_CASE("a table that the base study does not have is added", "[sweep_file]") {
   const SweepFolder folder(kVariant + "set.diagnosis.mpm_threshold = 0.2\n");
   CHECK(mpm_threshold(load_sweep(folder.file()).variants[1].study) == 0.2);
