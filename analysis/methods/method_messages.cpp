@@ -1,11 +1,13 @@
 #include "analysis/methods/method_messages.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -14,8 +16,10 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/methods/source_probabilities.hpp"
+#include "base/base64.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "base/row_major.hpp"
 #include "base/system/foreign_text.hpp"
 #include "scenarios/controller/model_json.hpp"
 
@@ -310,6 +314,15 @@ void add_cvs_json(const Assessment& assessment, const PlantModel& plant, bool te
   }
 }
 
+Json signal_json(const Eigen::MatrixXd& signal, SignalForm form) {
+  static_assert(std::endian::native == std::endian::little);
+  if (form == SignalForm::lists)
+    return matrix_json(signal);
+  const RowMajorMatrix rows =
+      signal.unaryExpr([](double value) { return std::isfinite(value) ? value : kNaN; });
+  return {{"rows", rows.rows()}, {"base64", base64(std::as_bytes(std::span(rows.data(), rows.size())))}};
+}
+
 /// Those with a scope that an answer can have.
 Json numbers_json(const Assessment& assessment, const PlantModel& plant, const MethodDescription& method) {
   const auto ny = static_cast<Eigen::Index>(plant.cvs.size()),
@@ -347,33 +360,33 @@ const std::vector<LoopSignal>& loop_signals() {
   return signals;
 }
 
-Json loop_json(const AssessedLoop& loop) {
+Json loop_json(const AssessedLoop& loop, SignalForm form) {
   Json json;
   for (const LoopSignal& signal : loop_signals())
-    json[signal.name] = matrix_json(loop.*signal.member);
+    json[signal.name] = signal_json(loop.*signal.member, form);
   if (loop.whole != nullptr) {
     json["first"] = loop.first;
-    json["whole"] = loop_json(*loop.whole);
+    json["whole"] = loop_json(*loop.whole, form);
   }
   return json;
 }
 
-void add_corrected(Json& json, const AssessedLoop& loop, const ModelCorrection* correction) {
+void add_corrected(Json& json, const AssessedLoop& loop, const ModelCorrection* correction, SignalForm form) {
   const std::shared_ptr<const AssessedLoop> corrected =
       correction != nullptr ? correction->corrected(loop) : nullptr;
   const AssessedLoop& shown = corrected ? *corrected : loop;
-  json["y_sim_corrected"] = matrix_json(shown.y_sim);
+  json["y_sim_corrected"] = signal_json(shown.y_sim, form);
   if (loop.whole != nullptr)
-    json["whole"]["y_sim_corrected"] = matrix_json(shown.whole->y_sim);
+    json["whole"]["y_sim_corrected"] = signal_json(shown.whole->y_sim, form);
 }
 
-Json context_json(const AssessmentContext& context) {
+Json context_json(const AssessmentContext& context, SignalForm form) {
   const Study& study = context.study;
   Json json = loop_context_json(study.plant, study.controller, study.sensitivity.samples);
   json["samples"] = study.simulation.samples;
   json["operating_point"] = {{"u", vector_json(context.basis.point.u)},
                              {"y", vector_json(context.basis.point.y)}};
-  json["benchmark"] = context.benchmark ? loop_json(*context.benchmark) : Json();
+  json["benchmark"] = context.benchmark ? loop_json(*context.benchmark, form) : Json();
   return json;
 }
 

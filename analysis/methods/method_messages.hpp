@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment.hpp"
 #include "analysis/methods/assessment_method.hpp"
+#include "base/enum_words.hpp"
 
 // What a method from outside is told, and what it answers, as JSON (docs/bring_your_own.md). A number that is
 // missing or not finite is null.
@@ -30,17 +33,25 @@ struct LoopSignal {
 /// y, u, u_target, d, y_sim, y_set, candidates.
 const std::vector<LoopSignal>& loop_signals();
 
-/// {"y": [[...], ...], ...}: the signals of a loop, a list for each row. Of a window, with "whole" and
-/// "first".
-nlohmann::ordered_json loop_json(const AssessedLoop& loop);
+/// How the signals of a loop stand in a message: a list for each row, or {"rows": count, "base64": text} of
+/// the numbers row by row, 8 bytes each (IEEE 754, the last byte first), in which NaN is what null is in a
+/// list.
+enum class SignalForm : std::int8_t { lists, base64 };
+
+template <>
+inline constexpr auto kWords<SignalForm> = word_list("lists", "base64");
+
+/// {"y": [[...], ...], ...}: the signals of a loop. Of a window, with "whole" and "first".
+nlohmann::ordered_json loop_json(const AssessedLoop& loop, SignalForm form = SignalForm::lists);
 
 /// Puts "y_sim_corrected" beside "y_sim" in the loop_json() of a loop: y_sim as ModelCorrection::corrected()
 /// has it, or y_sim where nothing is learnt.
-void add_corrected(nlohmann::ordered_json& json, const AssessedLoop& loop, const ModelCorrection* correction);
+void add_corrected(nlohmann::ordered_json& json, const AssessedLoop& loop, const ModelCorrection* correction,
+                   SignalForm form = SignalForm::lists);
 
 /// The plant's variables, sample time, nominal model (transfer functions and step responses), controller,
-/// operating point and benchmark: all that a method may know besides the loop. No draw, no seed.
-nlohmann::ordered_json context_json(const AssessmentContext& context);
+/// operating point and benchmark (loop_json): all that a method may know besides the loop. No draw, no seed.
+nlohmann::ordered_json context_json(const AssessmentContext& context, SignalForm form = SignalForm::lists);
 
 /// What a method of this program says of a loop, in the form of an answer (see assessment_of()):
 /// `cv_flagged`, `cv_score` and `cv_source` of all CVs where it locates CVs, and its numbers of the loop, of

@@ -36,12 +36,17 @@ Json question(const char* what, Json content) {
 }
 
 Json describe_content(const MethodProgram& program) {
-  return {{"protocol", kProtocol}, {"name", program.name}, {"options", Json::parse(program.options)}};
+  return {{"protocol", kProtocol},
+          {"signals", kWords<SignalForm>},
+          {"name", program.name},
+          {"options", Json::parse(program.options)}};
 }
 
-/// What a program says of itself, and the methods of this program whose answers it is told with each loop.
+/// What a program says of itself, how it reads signals, and the methods of this program whose answers it is
+/// told with each loop.
 struct ProgramDescription {
   MethodDescription method;
+  SignalForm signals = SignalForm::lists;
   std::vector<std::string> methods;
 };
 
@@ -114,7 +119,8 @@ void take_probabilities(const JsonEntry& entry, MethodDescription& method) {
 void read_description(const JsonEntry& entry, ProgramDescription& description) {
   MethodDescription& method = description.method;
   AssessmentRequirements& needs = method.requirements;
-  entry.require_keys({"title", "verdict", "needs", "answers", "methods", "numbers", "stated_false_alarms"});
+  entry.require_keys(
+      {"title", "verdict", "needs", "answers", "methods", "numbers", "stated_false_alarms", "signals"});
   method.title = text_or(entry, "title", method.title);
   method.verdict = text_or(entry, "verdict", method.verdict);
   bool corrected = false;
@@ -139,6 +145,9 @@ void read_description(const JsonEntry& entry, ProgramDescription& description) {
       shipped_methods().every_name();  // a method from outside could ask for itself
   for (const std::size_t place : words_in(entry, "methods", own))
     description.methods.push_back(own[place]);
+  if (const std::optional<JsonEntry> form = entry.find("signals"))
+    description.signals =
+        static_cast<SignalForm>(form->one_of({kWords<SignalForm>.begin(), kWords<SignalForm>.end()}));
   if (const std::optional<JsonEntry> stated = entry.find("stated_false_alarms"))
     method.stated_false_alarms = stated->number(0.0, 1.0);
   if (const std::optional<JsonEntry> numbers = entry.find("numbers"))
@@ -175,6 +184,7 @@ class ProgramMethod final : public AssessmentMethod {
                 std::shared_ptr<WaitingPrograms> programs, const AssessmentContext& context)
       : program_(program),
         method_(description.method),
+        signals_(description.signals),
         programs_(std::move(programs)),
         plant_(context.study.plant),
         correction_(context.correction),
@@ -185,9 +195,9 @@ class ProgramMethod final : public AssessmentMethod {
   }
 
   Assessment assess(const AssessedLoop& loop) override {
-    Json told = loop_json(loop);
+    Json told = loop_json(loop, signals_);
     if (method_.information == ModelInformation::learnt)
-      add_corrected(told, loop, correction_.get());
+      add_corrected(told, loop, correction_.get(), signals_);
     for (Told& each : told_)
       told["answers"][each.method->name] = answer_json(each.assessor->assess(loop), plant_, *each.method);
     Json answer;
@@ -207,9 +217,9 @@ class ProgramMethod final : public AssessmentMethod {
 
  private:
   Json told_context(const AssessmentContext& context) const {
-    Json told = context_json(context);
+    Json told = context_json(context, signals_);
     if (method_.information == ModelInformation::learnt && context.benchmark)
-      add_corrected(told["benchmark"], *context.benchmark, correction_.get());
+      add_corrected(told["benchmark"], *context.benchmark, correction_.get(), signals_);
     return told;
   }
 
@@ -247,6 +257,7 @@ class ProgramMethod final : public AssessmentMethod {
 
   const MethodProgram program_;
   const MethodDescription method_;
+  const SignalForm signals_;
   const std::shared_ptr<WaitingPrograms> programs_;
   const PlantModel& plant_;
   const std::shared_ptr<const ModelCorrection> correction_;

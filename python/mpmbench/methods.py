@@ -1,6 +1,5 @@
 """Methods of assessment that are functions of a loop."""
 
-import copy
 import functools
 import inspect
 import json
@@ -14,9 +13,10 @@ import tempfile
 import time
 
 from .identity import digest
-from .signals import Loop
+from .signals import Loop, told
 from .words import toml
 
+READ_SIZE = 1 << 20  # bytes; most messages are smaller
 LONGEST_TIME = 86400  # seconds; a function of this process is stopped by its user
 
 
@@ -123,11 +123,12 @@ class Session:
         # what names the code of the function is not for it
         options = {name: value for name, value in asked["options"].items() if name != "code"}
         self.method = self.method.with_options(**options)
-        return self.method.description()
+        signals = {"signals": "base64"} if "base64" in asked.get("signals", []) else {}
+        return {**self.method.description(), **signals}
 
     def _context(self, context):
         self.context = context
-        self.learnt = self.method.learn and self.method.learn(copy.deepcopy(context))
+        self.learnt = self.method.learn and self.method.learn(told(context))
         self._benchmark = Loop(context["benchmark"], context, self.learnt)
         return {}
 
@@ -165,7 +166,7 @@ def serve(method, needs=(), answers=()):
         sys.exit(f"{sys.argv[0]}: a method that mpmbench starts; name it in a file for --method-file")
     answers_end, sys.stdout = sys.stdout.buffer, sys.stderr
     session = Session(method)
-    for line in sys.stdin.buffer:
+    for line in open(sys.stdin.fileno(), "rb", buffering=READ_SIZE, closefd=False):
         if not line.strip():  # an empty line follows each message
             continue
         try:

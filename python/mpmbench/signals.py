@@ -1,5 +1,6 @@
 """A loop as a method sees it."""
 
+import base64
 import copy
 import functools
 
@@ -9,6 +10,32 @@ from . import figures
 
 SIGNALS = {"y": "cvs", "u": "mvs", "u_target": "mvs", "d": "mds", "y_sim": "cvs", "y_set": "cvs", "candidates": None,
            "y_sim_corrected": "cvs"}
+
+
+def array(rows):
+    """A signal of a message as an array, and what an archive has as it is."""
+    if isinstance(rows, dict):
+        return numpy.frombuffer(base64.b64decode(rows["base64"]), "<f8").reshape(rows["rows"], -1)
+    return numpy.array(rows, float)  # null becomes NaN
+
+
+def is_empty(rows):
+    return rows is None or (rows["rows"] if isinstance(rows, dict) else len(rows)) == 0
+
+
+def lists(signals):
+    """The signals of a message as lists, None for a sample that is missing, as docs/bring_your_own.md has them."""
+    def listed(rows):
+        return [[None if value != value else value for value in row] for row in array(rows).tolist()] if rows["rows"] else []
+    return {name: listed(rows) if isinstance(rows, dict) and "base64" in rows else rows for name, rows in signals.items()}
+
+
+def told(context):
+    """A context of its own for whoever may change it, with its signals as lists."""
+    context = copy.deepcopy(context)
+    if isinstance(context.get("benchmark"), dict):
+        context["benchmark"] = lists(context["benchmark"])
+    return context
 
 
 class Loop:
@@ -35,7 +62,7 @@ class Loop:
     @functools.cached_property
     def context(self):
         """What a method may know besides the loop. It is the loop's own: what a method changes in it, no other sees."""
-        return copy.deepcopy(self._known)
+        return told(self._known)
 
     @property
     def cvs(self):
@@ -75,9 +102,7 @@ class Loop:
         if name not in SIGNALS:
             raise AttributeError(f"a loop has no '{name}'; allowed: {', '.join(SIGNALS)}")
         rows = self._signals.get(name)
-        if rows is None or len(rows) == 0:
-            rows = numpy.empty((0, len(self._signals["y"][0])))
-        value = numpy.array(rows, float)  # null becomes NaN
+        value = numpy.empty((0, self.y.shape[1])) if is_empty(rows) else array(rows)
         value.flags.writeable = False  # methods share the benchmark, and each loop is that of all
         setattr(self, name, value)
         return value

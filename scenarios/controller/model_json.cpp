@@ -14,9 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json row_json(const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& row) {
-  Json list = Json::array();
+  Json::array_t list;
+  list.reserve(static_cast<std::size_t>(row.size()));
   for (const double value : row)
-    list.push_back(value);
+    list.emplace_back(value);
   return list;
 }
 

@@ -1,5 +1,6 @@
 """The Python package: studies, archives, methods that are functions, records as data frames, figures, errors."""
 
+import base64
 import importlib
 import json
 import os
@@ -18,6 +19,8 @@ import xarray
 
 import mpmbench
 from mpmbench import figures, identity, words
+from mpmbench.methods import Session
+from mpmbench.signals import Loop
 
 STUDY = "wood-berry"
 HEALTHY = {"experiments.healthy": 10}
@@ -241,6 +244,26 @@ class Methods(unittest.TestCase):
         helper = [lambda: 1, lambda: 2]
         functions = [lambda loop, help=each: help() for each in helper]
         self.assertNotEqual(*map(identity.digest, functions))
+
+    def test_both_forms_of_a_message_are_the_same_loop(self):
+        rows = {"y": [[0.1, None, -0.0], [1e-320, 3.0, 1 / 3]], "u": [], "y_sim": [[1.0, 2.0, 3.0]] * 2}
+        packed = {name: {"rows": len(value), "base64": base64.b64encode(numpy.array(value, float).tobytes()).decode()}
+                  for name, value in rows.items()}
+        listed, dense = (Loop({**form, "candidates": None}, {"benchmark": form}) for form in (rows, packed))
+        for name in "y", "u", "y_sim", "candidates":
+            self.assertEqual(getattr(listed, name).tobytes(), getattr(dense, name).tobytes(), name)
+            self.assertEqual(getattr(listed, name).shape, getattr(dense, name).shape, name)
+        self.assertEqual(listed.benchmark.y.tobytes(), dense.benchmark.y.tobytes())
+        self.assertEqual(json.dumps(listed.context), json.dumps(dense.context))
+        with self.assertRaises(ValueError):
+            dense.y[0, 0] = 1.0
+
+    def test_a_program_says_how_it_reads_signals(self):
+        ask = {"ask": "describe", "number": 1, "describe": {"options": {}}}
+        for offered, told in ({"signals": ["lists", "base64"]}, "base64"), ({"signals": ["lists"]}, None), ({}, None):
+            ask["describe"] = {"options": {}, **offered}
+            said = json.loads(Session(mine).answer(json.dumps(ask)))
+            self.assertEqual(said.get("signals"), told)
 
     def test_moving_windows_are_parts_of_their_record(self):
         windows = []

@@ -72,6 +72,18 @@ TEST_CASE("method messages: a loop is a list of samples for each row, null where
   CHECK(of_window.at("whole").at("y")[1].size() == 3);
 }
 
+TEST_CASE("method messages: a loop as numbers row by row, NaN where one is missing or not finite") {
+  AssessedLoop loop;
+  loop.y = Eigen::MatrixXd{{1.0, kNaN, -2.5}, {kInfinity, 0.1, -0.0}};
+  const MessageJson json = loop_json(window_of(loop, 0, 3), SignalForm::base64);
+  CHECK(json.at("y") ==
+        MessageJson(
+            {{"rows", 2}, {"base64", "AAAAAAAA8D8AAAAAAAD4fwAAAAAAAATAAAAAAAAA+H+amZmZmZm5PwAAAAAAAACA"}}));
+  CHECK(json.at("candidates") == MessageJson({{"rows", 0}, {"base64", ""}}));
+  CHECK(json.at("whole").at("y") == json.at("y"));
+  CHECK(loop_json(loop) == loop_json(loop, SignalForm::lists));
+}
+
 TEST_CASE("method messages: what a method of this program says is an answer that means the same") {
   Assessment said;
   said.flagged = true;
