@@ -74,8 +74,10 @@ TEST_CASE("a variant is the base study with some keys laid over", "[sweep_file]"
 }
 
 TEST_CASE("the base study of a sweep may be changed for all of its lines", "[sweep_file]") {
-  const SweepFolder folder("set.study.seed = 99\nremove = [\"simulation.step\"]\n" + kVariant +
-                           "set.simulation.noise_standard_deviation = 0.0\n");
+  const SweepFolder folder(
+      "set.study.seed = 99\nremove = [\"simulation.step\"]\n"
+      "set.simulation.random_steps = {interval = {constant = 9}, level = {constant = 1}}\n" +
+      kVariant + "set.simulation.noise_standard_deviation = 0.0\n");
   const Sweep sweep = load_sweep(folder.file());
   for (const SweepVariant& variant : sweep.variants) {
     CHECK(variant.study.seed == 99);
