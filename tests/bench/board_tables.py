@@ -1,5 +1,6 @@
 """The tables of the finished boards in the documents, between `<!-- board: NAME -->` and `<!-- end -->`: those of
-README.md and docs/suite.md are of the suite `standard`, that of docs/suite_exact.md of the suite `exact`.
+README.md, docs/suite.md and docs/methods*.md are of the suite `standard`, those of docs/suite_exact.md and of the hard families
+in docs/methods.md of the suite `exact`.
 
 usage: board_tables.py MPMBENCH SOURCES [LEARNED]
 
@@ -177,6 +178,78 @@ def exact(board):
                  [row(method) for method in board["methods"]])
 
 
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"
+KINDS = "healthy", "mpm", "ud", "mpm_ud", "tuning", "other"
+
+
+def loops(sources, suite, method):
+    """(plant, family, kind, impact, flagged, told) of each loop of a finished board at which the method was shown; `told`: it is
+    flagged and its source right."""
+    board = json.loads((sources / f"scenarios/suites/{suite}.board.json").read_text())
+    for cell in board["cells"]:
+        if "methods" not in cell:
+            continue
+        for truth, said in zip(cell["truths"], cell["methods"][method]["outcomes"]):
+            if "-" not in (truth, said):
+                truth, said = LETTERS.index(truth), LETTERS.index(said)
+                flagged = bool(said & 2)
+                yield (cell["plant"], cell["family"], KINDS[truth & 7], bool(truth & 8), flagged, flagged and bool(said & 32))
+
+
+def hard_families(sources, board):
+    """Sources of the faults with an impact on three plants of the suite of exact models, by family."""
+    plants = "wood-berry", "ogunnaike-ray", "shell-3x3"
+    methods = ["mpmbench", "likelihood", "order", "arx-oe", "botelho", REFERENCE]
+    own = next(method for method in board["methods"] if method["name"] == REFERENCE)["families"]
+    # `other`: that a fault is around the model is right, whatever is named.
+    families = [family["name"] for family in board["families"] if family["name"] != "other"]
+    hits = {method: {} for method in methods}
+    for method in methods:
+        for plant, family, _, impact, _, told in loops(sources, "exact", method):
+            if plant in plants and impact and family in families:
+                hits[method].setdefault(family, []).append(told)
+    families = [family for family in families if family in hits["order"]]
+
+    def share(told):
+        return f"{100 * sum(told) / len(told):.0f} %"
+
+    rows = [[f"`{family}` ({len(hits['order'][family])})",
+             *(share(hits[method][family]) if method != REFERENCE or own[family]["cells"] else "" for method in methods)]
+            for family in families]
+    rows.append(["all", *(share(sum((hits[method][family] for family in families), [])) for method in methods[:-1]), ""])
+    return table(["family", *(f"`{method}`" for method in methods[:-1]), "reference"], rows)
+
+
+def worlds(board):
+    """Methods in the family `worlds`, at their own thresholds and at equal false alarms."""
+    methods = {method["name"]: method for method in board["methods"]}
+    heads, cells = columns(board, [(rate, ["worlds"]) for rate in ("false_alarm_healthy", "power_05_impact", "source_05_impact",
+                                                                   "source_all")], {"source_05_impact": "names none",
+                                                                                    "source_all": "names none"})
+    return table(["method", *(head.removesuffix(": `worlds`") for head in heads)], [
+        [f"`{name}`", *(cell(methods[name]) for cell in cells)]
+        for name in ("mpmbench", "likelihood", "order", "counterfactual", "arx-oe")])
+
+
+def learnt(sources):
+    """Sources of all faults, with an impact or without, where the errors of the model are learnt."""
+    kinds = {"mpm": "mismatch named", "ud": "disturbance named", "mpm_ud": "both named", "other": "other named"}
+    counts = {}
+    for method in ("likelihood", "mpmbench"):
+        for plant, family, kind, _, flagged, told in loops(sources, "standard", method):
+            if family in ("worlds", "inputs", "growing", "mixed"):
+                place = "on `tank`" if plant == "tank" else f"`{family}`"
+                counts.setdefault((place, method), {}).setdefault(kind, []).append(flagged if kind == "healthy" else told)
+
+    def count(found):
+        return f"{sum(found)} of {len(found)}" if found else ""
+
+    return table(["family", "method", "healthy, flagged", *kinds.values()], [
+        [place if method == "likelihood" else "", f"`{method}`",
+         *(count(counts[place, method].get(kind)) for kind in ("healthy", *kinds))]
+        for place in ("`worlds`", "`inputs`", "`growing`", "`mixed`", "on `tank`") for method in ("likelihood", "mpmbench")])
+
+
 def finished(program, suite):
     """What the program says of a finished board."""
     return json.loads(subprocess.check_output([program, "suite", suite, "--json"], text=True))
@@ -186,12 +259,15 @@ def pages(program, sources):
     """The pages as they should be, by path."""
     listed = json.loads(subprocess.check_output([program, "methods", "--json"], text=True))["methods"]
     titles = {method["name"]: method["title"] for method in listed}
-    standard, cells = finished(program, "standard"), json.loads((sources / LEARNED).read_text())
+    standard, exact_board = finished(program, "standard"), finished(program, "exact")
+    cells = json.loads((sources / LEARNED).read_text())
     tables = {"README.md": {"standard": readme(standard, titles)},
               "docs/suite.md": {"detection": detection(standard), "ranking": ranking(standard), "questions": questions(standard),
                                 "curve": curve(standard, cells),
                                 "learned": learned(cells)},
-              "docs/suite_exact.md": {"exact": exact(finished(program, "exact"))}}
+              "docs/methods.md": {"worlds": worlds(standard), "hard": hard_families(sources, exact_board)},
+              "docs/methods_own.md": {"learnt": learnt(sources)},
+              "docs/suite_exact.md": {"exact": exact(exact_board)}}
     return {sources / name: with_tables((sources / name).read_text(encoding="utf-8"), of_page)
             for name, of_page in tables.items()}
 
