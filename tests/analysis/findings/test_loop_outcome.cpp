@@ -24,13 +24,14 @@ TEST_CASE("every fact of an outcome is put back as it was taken out, and is one 
   }
   // A member that is in no fact is missing here.
   const auto& [answered, flagged, above_05, above_chosen, right_cv, right_source, above_01, above_not_mpm,
-               names_source, channel, parameter, size, candidate, window, mismatch, redrawn_05] = all;
+               names_source, channel, parameter, size, candidate, window, mismatch, redrawn_05, told] = all;
   for (const bool member : {answered, flagged, above_05, above_chosen, right_cv, right_source, above_01,
                             above_not_mpm, names_source})
     CHECK(member);
   for (const Correctness member : {channel, parameter, size, candidate, window, mismatch})
     CHECK(member == Correctness::wrong);
   CHECK(redrawn_05 == 1);
+  CHECK(told == ToldSource::mpm);
 }
 
 TEST_CASE("a method says nothing that it cannot, and nothing right of what is not there", "[outcome]") {
