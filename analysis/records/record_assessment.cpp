@@ -186,7 +186,11 @@ void add_trial(RecordAssessment& assessment, const Study& study,
     alike->as_kept.monitoring.reset();
     alike->closed.monitoring.reset();
     alike->late = 0.0;
-    const TrialLoops loops = run_trials({made->study, [alike, made] { return trial_assessor(alike, made); }});
+    const TrialLoops loops = run_trials({made->study, [alike, made](const std::vector<std::string>& methods) {
+                                           const auto asked = std::make_shared<RecordFrame>(*alike);
+                                           asked->methods = methods;
+                                           return trial_assessor(asked, made);
+                                         }});
     const std::size_t last = assessment.said.size();
     RecordTrial trial{loops.archive,
                       static_cast<std::int64_t>(loops.records.size()),
@@ -418,7 +422,7 @@ TrialRunner trials_in_memory(QpSolverFactory factory) {
   return [factory = std::move(factory)](const TrialRequest& request) {
     const BasisCase basis = run_basis_case(request.study, factory);
     ExperimentRunner runner(request.study, basis, std::vector<std::string>{}, factory);
-    const LoopAssessor assess = request.assessor();
+    const LoopAssessor assess = request.assessor(request.study.methods);
     const auto records = std::make_shared<std::vector<ExperimentRecord>>();
     for (std::int64_t index = 0; index < request.study.experiments.total(); ++index) {
       ExperimentRecord record = runner.run(index, StorePolicy::all);

@@ -102,8 +102,9 @@ struct AssessOptions {
 
 /// Loops like a record of a plant, and how each of them is judged.
 struct TrialRequest {
-  Study study;                             ///< trial_study(), one experiment a loop
-  std::function<LoopAssessor()> assessor;  ///< makes one for each thread
+  Study study;  ///< trial_study(), one experiment a loop
+  /// Makes what judges the loops by these of its methods, for each thread.
+  std::function<LoopAssessor(const std::vector<std::string>& methods)> assessor;
 };
 
 /// The loops of a request with their answers. `keeps` holds what the records are read from.

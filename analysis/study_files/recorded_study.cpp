@@ -248,6 +248,7 @@ Study trial_study(const Study& recorded, const TrialPlan& plan) {
       toml::table{
           {"mpm", plan.faulty - ud - mpm_ud}, {"ud", ud}, {"mpm_ud", mpm_ud}, {"healthy", plan.healthy}});
   text.erase("monitoring");
+  text.erase("methods");  // they change no loop
   table_in(text, "record").erase("missing");
   if (plan.model_error > 0.0)
     text.insert_or_assign("world", imperfect_worlds(recorded, plan));
@@ -257,7 +258,9 @@ Study trial_study(const Study& recorded, const TrialPlan& plan) {
   table_in(text, "study")
       .insert_or_assign("title", fmt::format("{}{}{}{}", kTrialTitle, recorded.title,
                                              plan.judged.empty() ? "" : ", ", plan.judged));
-  return study_of(text, recorded.name + ", calibration run", recorded.assessment.table);
+  Study study = study_of(text, recorded.name + ", calibration run", recorded.assessment.table);
+  study.methods = recorded.methods;
+  return study;
 }
 
 bool is_trial_study(const Study& study) {

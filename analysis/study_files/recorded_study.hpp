@@ -42,7 +42,8 @@ struct TrialPlan {
 
 /// The study of a calibration run: loops of recorded_study() without a fault, and others with the faults of
 /// the study, its kinds as often as there, under the seed of the study with the bits of kCalibrationBits
-/// flipped, in the worlds of `plan`. No sample is missing in them. Errors: as parse_study().
+/// flipped, in the worlds of `plan`. No sample is missing in them. Its text is the same whatever the methods
+/// are. Errors: as parse_study().
 Study trial_study(const Study& recorded, const TrialPlan& plan);
 
 /// Is this the study of a calibration run? Its title says so.

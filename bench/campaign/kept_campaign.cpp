@@ -21,39 +21,53 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Were the methods of this campaign those of this program, also where they come from outside?
-bool has_same_methods(const Campaign& campaign, const Study& study) {
-  return method_names(campaign) == study.methods &&
-         std::all_of(
-             campaign.methods.begin(), campaign.methods.end(), [&study](const CampaignMethod& method) {
-               const MethodDescription& kept = method.form->method();
-               return kept.fingerprint == method_table(study.assessment).method(kept.name).fingerprint;
-             });
-}
-
-bool is_of(const Campaign& campaign, const Study& of, const RunOptions& options) {
-  const Study study = study_to_run(of, options);
+/// Are they the loops that this run would make?
+bool has_loops_of(const Campaign& campaign, const Study& study, const RunOptions& options) {
   const std::int64_t count = options.experiments.value_or(study.experiment_count());
   return campaign.study.source == study.source && campaign.study.seed == study.seed &&
-         has_same_methods(campaign, study) && campaign.info.solver == options.solver &&
-         campaign.info.outside_files == outside_files(study) &&
+         campaign.info.solver == options.solver && campaign.info.outside_files == outside_files(study) &&
          campaign.info.mpmbench_version == mpmbench_version() && campaign.info.git_sha == source_revision() &&
          static_cast<std::int64_t>(records_of(campaign).size()) == count;
 }
 
 }  // namespace
 
+std::vector<std::string> methods_without(const Campaign& campaign, const Study& study) {
+  std::vector<std::string> methods;
+  for (const std::string& name : study.methods) {
+    const auto kept =
+        std::find_if(campaign.methods.begin(), campaign.methods.end(),
+                     [&name](const auto& method) { return method.form->method().name == name; });
+    if (kept == campaign.methods.end() ||
+        kept->form->method().fingerprint != method_table(study.assessment).method(name).fingerprint)
+      methods.push_back(name);
+  }
+  return methods;
+}
+
 std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& study, const RunOptions& options,
                                       const std::function<void(const std::string&)>& warn) {
+  std::optional<Campaign> campaign = kept_loops(archive, study, options, warn);
+  if (campaign) {
+    const Study wanted = study_to_run(study, options);
+    if (method_names(*campaign) != wanted.methods || !methods_without(*campaign, wanted).empty())
+      return std::nullopt;
+    std::error_code no_status;
+    if (fs::exists(shard_folder_of(archive), no_status))
+      remove_shards(archive);  // of a run that was killed between archive and clean-up
+  }
+  return campaign;
+}
+
+std::optional<Campaign> kept_loops(const fs::path& archive, const Study& study, const RunOptions& options,
+                                   const std::function<void(const std::string&)>& warn) {
   std::error_code no_status;
   if (!fs::is_regular_file(archive, no_status))
     return std::nullopt;
   try {
     Campaign campaign = stream_archive(archive);
-    if (!is_of(campaign, study, options))
+    if (!has_loops_of(campaign, study_to_run(study, options), options))
       return std::nullopt;
-    if (fs::exists(shard_folder_of(archive), no_status))
-      remove_shards(archive);  // of a run that was killed between archive and clean-up
     return campaign;
   } catch (const ArchiveError& error) {
     if (warn)

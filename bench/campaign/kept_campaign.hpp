@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/campaign/campaign_hooks.hpp"
 #include "bench/execution/run_options.hpp"
@@ -19,6 +20,14 @@ namespace mpm {
 std::optional<Campaign> kept_campaign(const std::filesystem::path& archive, const Study& study,
                                       const RunOptions& options,
                                       const std::function<void(const std::string&)>& warn);
+
+/// The same, whatever methods have judged its loops.
+std::optional<Campaign> kept_loops(const std::filesystem::path& archive, const Study& study,
+                                   const RunOptions& options,
+                                   const std::function<void(const std::string&)>& warn);
+
+/// Those of the methods of `study` whose answers the campaign lacks, or has from another version of them.
+std::vector<std::string> methods_without(const Campaign& campaign, const Study& study);
 
 /// Runs the study, going on with the shards that an interrupted run has left unless they are of another study
 /// or program, and writes the archive. Errors: as run_campaign(), write_archive() and

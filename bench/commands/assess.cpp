@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,11 +14,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "analysis/methods/assessment_record.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/records/record_assessment.hpp"
 #include "analysis/study_files/recorded_study.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "base/error.hpp"
+#include "bench/campaign/comparison_runner.hpp"
 #include "bench/campaign/kept_campaign.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
@@ -25,6 +28,7 @@
 #include "bench/commands/option_checks.hpp"
 #include "bench/console/output.hpp"
 #include "bench/console/progress.hpp"
+#include "bench/execution/experiment_work.hpp"
 #include "bench/execution/run_options.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
@@ -92,7 +96,59 @@ void require_own_archive(const std::filesystem::path& archive) {
                      "another name for the calibration run (--calibration)");
 }
 
-/// Runs the loops like the record in workers and keeps them, or takes those that are kept.
+/// Answers on the loops of a kept campaign, by the experiment.
+using EarlierAnswers = std::map<std::int64_t, std::vector<AssessmentRecord>>;
+
+/// Those of the methods of the study that are not `missing`.
+std::shared_ptr<const EarlierAnswers> earlier_answers(const Campaign& campaign, const Study& study,
+                                                      const std::vector<std::string>& missing) {
+  const auto has = [](const std::vector<std::string>& names, const AssessmentRecord& said) {
+    return std::find(names.begin(), names.end(), said.form->method().name) != names.end();
+  };
+  const auto earlier = std::make_shared<EarlierAnswers>();
+  records_of(campaign).each([&](const ExperimentRecord& record) {
+    if (record.status == ExperimentStatus::ok)
+      for (const AssessmentRecord& said : record.assessments)
+        if (has(study.methods, said) && !has(missing, said))
+          (*earlier)[record.draw.index].push_back(said);
+  });
+  return earlier;
+}
+
+/// Judges loops by the methods that are missing, and takes the answers of the others from an earlier run.
+LoopAssessor assessor_beside(const TrialRequest& request, const std::vector<std::string>& missing,
+                             const std::shared_ptr<const EarlierAnswers>& earlier) {
+  return [earlier, ask_missing = request.assessor(missing), ask_all = request.assessor(request.study.methods),
+          forms = assessment_forms(request.study, request.study.methods)](const ExperimentRecord& record) {
+    const auto known = earlier->find(record.draw.index);
+    if (known == earlier->end())
+      return ask_all(record);
+    ExperimentRecord answered;
+    answered.assessments = unassessed(forms);
+    put_answers(known->second, answered);
+    put_answers(ask_missing(record), answered);
+    return answered.assessments;
+  };
+}
+
+/// The kept loops of a request whose methods are all among those that have judged them. Otherwise none, and
+/// `run` asks those that have not.
+std::optional<Campaign> answered_before(const TrialRequest& request, const std::filesystem::path& archive,
+                                        RunOptions& run) {
+  std::vector<std::string> missing = request.study.methods;
+  auto earlier = std::make_shared<const EarlierAnswers>();
+  if (std::optional<Campaign> campaign = kept_loops(archive, request.study, run, {})) {
+    missing = methods_without(*campaign, request.study);
+    if (missing.empty())
+      return with_methods(*std::move(campaign), request.study.methods, std::nullopt);
+    earlier = earlier_answers(*campaign, request.study, missing);
+  }
+  run.assessor = [&request, missing, earlier] { return assessor_beside(request, missing, earlier); };
+  return std::nullopt;
+}
+
+/// Runs the loops like the record in workers and keeps them, or takes those that are kept. Methods that have
+/// judged them are not asked again.
 TrialRunner kept_trials(const AssessArguments& options, Progress& progress, const std::string& command) {
   return [&options, &progress, &command](const TrialRequest& request) {
     const std::filesystem::path archive = calibration_archive(options);
@@ -102,8 +158,9 @@ TrialRunner kept_trials(const AssessArguments& options, Progress& progress, cons
     run.store = StorePolicy::none;
     run.audit_share = 0.0;
     run.allow_unhealthy_basis = true;
-    run.assessor = request.assessor;
     std::optional<Campaign> campaign = kept_campaign(archive, request.study, run, hooks.on_warning);
+    if (!campaign)
+      campaign = answered_before(request, archive, run);
     if (!campaign) {
       require_output_archive(archive, "calibration run");
       campaign = run_and_keep(archive, request.study, run, hooks, command);

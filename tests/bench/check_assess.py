@@ -14,6 +14,10 @@ import subprocess
 import sys
 import tempfile
 
+import h5py
+
+from archives import check_same
+
 HISTORIAN = "\n[record]\nquantisation = 0.5\nmissing = {share = 0.05, length = 3}\n"
 COLUMNS = ["time", "xD", "xB", "R", "S", "F"]
 
@@ -381,6 +385,30 @@ def check_healthy(bench, study):
     assert rates["false_alarm_healthy"]["hits"] <= 2 and rates["detected_impact"]["value"] > 0.5, rates
 
 
+def check_further_methods(bench, study):
+    """Methods that have judged the simulated records are not asked again, and the answers are those of one go."""
+    def assess(calibration, methods):
+        path = bench.folder / calibration / "c.h5"
+        path.parent.mkdir(exist_ok=True)
+        said = bench.run("assess", study, "clean.csv", "--trials", 8, "--methods", methods, "--calibration", path, "--json",
+                         "--quiet").stdout
+        with h5py.File(path) as file:
+            return json.loads(said), {name: file[f"methods/{name}"].attrs["milliseconds"] for name in ("order", "sse")
+                                      if f"methods/{name}" in file}, path
+
+    whole, _, other = assess("one go", "order,sse")
+    _, first, path = assess("further", "order")
+    said, times, _ = assess("further", "order,sse")
+    assert times["order"] == first["order"] and times["sse"] > 0, (times, first)
+    assert said == whole, said
+    check_same(path, other)
+    before = path.read_bytes()
+    for methods in "sse,order", "sse":
+        said, *_ = assess("further", methods)
+        assert path.read_bytes() == before
+        assert said == assess(f"one go of {methods}", methods)[0], methods
+
+
 def check_modes(bench, study):
     """What operators had taken is told by columns that have a value where it changes, and missed without them."""
     spells = [("R", 110, 50), ("R", 160, 40), ("xB", 130, 90), ("S", 290, 60)]
@@ -440,6 +468,7 @@ def main(program, study):
         check_valve(bench, study)
         check_healthy(bench, study)
         check_modes(bench, study)
+        check_further_methods(bench, study)
 
 
 if __name__ == "__main__":
