@@ -4,8 +4,9 @@
 usage: edit_run.py MPMBENCH [SUITE [ROUNDS [options of `suite`, such as --plants wood-berry]]]
 
 The suite is `quick` and there are 3 rounds unless you say otherwise. `anew` runs `sse` without a cache; `method` asks `sse`
-about loops that are kept, without a word of `sse`; `program` asks a program in Python that does next to nothing. Shown are
-the least wall-clock and processor times, in s, and how many times as fast as `anew` they are.
+about loops that are kept, without a word of `sse`; `lists` and `base64` ask a program in Python that does next to nothing
+and reads signals in one form or the other. Shown are the least wall-clock and processor times, in s, and how many times
+as fast as `anew` they are.
 """
 
 import os
@@ -22,7 +23,7 @@ import json, sys
 for line in sys.stdin:
     if line.strip():
         message = json.loads(line)
-        answer = {"flagged": False} if message["ask"] == "loop" else {}
+        answer = {"loop": {"flagged": False}, "describe": {"signals": sys.argv[1]}}.get(message["ask"], {})
         print(json.dumps({"number": message["number"], **answer}), flush=True)
 """
 
@@ -36,7 +37,9 @@ def main(program, suite="quick", rounds="3", *options):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "mine.py").write_text(PROGRAM)
-        (folder / "mine.toml").write_text(f'[method.mine]\ncommand = ["{sys.executable}", "{folder}/mine.py"]\n')
+        for form in "lists", "base64":
+            (folder / f"{form}.toml").write_text(
+                f'[method.mine]\ncommand = ["{sys.executable}", "{folder}/mine.py", "{form}"]\n')
 
         def seconds(cache, *words):
             output = folder / "output"
@@ -51,7 +54,8 @@ def main(program, suite="quick", rounds="3", *options):
         size = sum(path.stat().st_size for path in filled.iterdir())
         print(f"{suite}: {size / 1e6:.1f} MB in the cache")
         ways = {"anew": ("off", "--methods", "sse"), "method": (folder / "cache", "--methods", "sse"),
-                "program": (folder / "cache", "--method-file", folder / "mine.toml", "--join", "none", "--methods", "botelho")}
+                **{form: (folder / "cache", "--method-file", folder / f"{form}.toml", "--join", "none", "--methods", "botelho")
+                   for form in ("lists", "base64")}}
         least = {way: (float("inf"), float("inf")) for way in ways}
         for _ in range(int(rounds)):
             for way, (cache, *words) in ways.items():
