@@ -99,6 +99,7 @@ double rank_z(const std::vector<double>& one, const std::vector<double>& other) 
 TEST_CASE("calibration: in each family of the suites its loops have the scores of healthy experiments") {
   // Of 17 families and 3 methods one in twenty sets of seeds would fail at this level by chance, two-sided.
   constexpr double kLevel = 1e-3;
+  constexpr std::size_t kSample = 3;  // one family in so many, unless all are asked for
   const double limit = boost::math::quantile(boost::math::normal(), 1.0 - 0.5 * kLevel);
   const std::string name = GENERATE("standard", "exact");
   if (name != "standard" && !testing::is_thorough())
@@ -109,7 +110,8 @@ TEST_CASE("calibration: in each family of the suites its loops have the scores o
     const std::string& family = suite.families[cell.family].name;
     if ((suite.plants[cell.plant].name == "tank") != (family == "nonlinear"))
       continue;
-    ++families;
+    if (++families % kSample != 1 && !testing::is_thorough())
+      continue;
     Study study = cell.study;
     study.monitoring.reset();
     study.experiments = {};
