@@ -13,7 +13,7 @@
 namespace mpm {
 namespace {
 
-const std::vector<std::string> kProgramKeys{"command", "time_limit", "options"};
+const std::vector<std::string> kProgramKeys{"command", "time_limit", "options", "threshold_option"};
 const std::vector<std::string> kCompositeKeys{"detector", "namer"};
 
 std::string program_options(const TomlTable& table) {
@@ -25,6 +25,15 @@ std::string program_options(const TomlTable& table) {
   std::ostringstream text;
   text << toml::json_formatter{*node->as_table()};
   return text.str();
+}
+
+/// The name of an option that is a number.
+std::string threshold_option(const TomlTable& table) {
+  const std::string name = read_text_or(table, "threshold_option", "");
+  const toml::table* const options = table.find("options") ? table.find("options")->as_table() : nullptr;
+  if (!name.empty() && (options == nullptr || !(*options)[name].is_number()))
+    table.refuse("threshold_option", in_quotes(name), "the name of a number among the options");
+  return name;
 }
 
 }  // namespace
@@ -73,6 +82,7 @@ std::vector<MethodProgram> load_method_file(const std::filesystem::path& path) {
     MethodProgram program{
         .name = name, .command = read_command(table, "command"), .options = program_options(table)};
     program.time_limit = read_time_limit_or(table, "time_limit", program.time_limit);
+    program.threshold_option = threshold_option(table);
     programs.push_back(std::move(program));
   }
   return programs;

@@ -27,6 +27,8 @@ struct MethodProgram {
   std::vector<std::string> command = {};  ///< the program and its arguments
   double time_limit = 60.0;               ///< seconds for an answer
   std::string options = "{}";             ///< JSON, for the program
+  /// The option among these that scores are compared with (threshold_rule.hpp); empty: none is known to be.
+  std::string threshold_option = {};
 };
 
 /// Reads a file of methods (docs/bring_your_own.md):
@@ -35,6 +37,7 @@ struct MethodProgram {
 ///   command = ["python3", "mine.py"]
 ///   time_limit = 60
 ///   options = {threshold = 1.5}
+///   threshold_option = "threshold"
 ///
 ///   [method.two]
 ///   detector = "sse"

@@ -17,6 +17,7 @@
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/source_probabilities.hpp"
+#include "analysis/methods/threshold_rule.hpp"
 #include "base/error.hpp"
 #include "base/system/foreign_text.hpp"
 #include "base/system/json_entry.hpp"
@@ -156,6 +157,10 @@ void read_description(const JsonEntry& entry, ProgramDescription& description) {
     take_probabilities(entry, method);
 }
 
+std::string threshold_place(const MethodProgram& program) {
+  return fmt::format("method '{}': threshold_option '{}'", program.name, program.threshold_option);
+}
+
 ProgramDescription description_of(const MethodProgram& program, WaitingPrograms& programs) {
   ProgramDescription description;
   MethodDescription& method = description.method;
@@ -174,6 +179,8 @@ ProgramDescription description_of(const MethodProgram& program, WaitingPrograms&
     throw InputError(fmt::format("method '{}', description", program.name), error.what(),
                      fmt::format("an answer within {} s", program.time_limit));
   }
+  if (!program.threshold_option.empty())
+    require_threshold_rule(method, threshold_place(program));
   return description;
 }
 
@@ -212,7 +219,12 @@ class ProgramMethod final : public AssessmentMethod {
       programs_->end_all();
       throw;
     }
-    return assessment_of(answer, plant_, method_, fmt::format("method '{}'", program_.name));
+    Assessment assessment = assessment_of(answer, plant_, method_, fmt::format("method '{}'", program_.name));
+    if (!program_.threshold_option.empty())
+      require_threshold_rule(answer, assessment, method_,
+                             threshold_in(program_.options, program_.threshold_option),
+                             threshold_place(program_));
+    return assessment;
   }
 
  private:

@@ -12,6 +12,9 @@
 #include <fmt/format.h>
 
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/threshold_rule.hpp"
+#include "analysis/methods/unfit_option.hpp"
+#include "base/non_finite.hpp"
 #include "base/sha256.hpp"
 #include "base/system/loaded_code.hpp"
 #include "base/system/surroundings.hpp"
@@ -58,9 +61,8 @@ void transfer_answers(Stream& stream, Answers& answers) {
   transfer_list(stream, answers, [&](auto& answer) { transfer_all(stream, answer.first, answer.second); });
 }
 
-using NamedAnswers = std::vector<std::pair<std::string, std::string>>;
-
-std::string bytes_to_keep(const std::string& loop, const NamedAnswers& answers) {
+std::string bytes_to_keep(const std::string& loop,
+                          const std::vector<std::pair<std::string, std::string>>& answers) {
   if (loop.empty() && answers.empty())
     return "";
   ByteWriter writer;
@@ -69,23 +71,15 @@ std::string bytes_to_keep(const std::string& loop, const NamedAnswers& answers) 
   return writer.take();
 }
 
-/// The answers of these methods that may be kept.
-NamedAnswers answers_to_keep(const ExperimentRecord& record, const std::vector<std::string>& asked,
-                             bool by_process) {
-  NamedAnswers answers;
-  for (const AssessmentRecord& said : record.assessments) {
-    const MethodDescription& method = said.form->method();
-    // Ipopt, which only a process has, has a limit of time.
-    const bool is_kept =
-        said.status == AssessmentStatus::failed ? !by_process : record.status == ExperimentStatus::ok;
-    if (!method.origin.empty() || !is_kept ||
-        std::find(asked.begin(), asked.end(), method.name) == asked.end())
-      continue;
+/// But for the time that it took.
+bool is_same_answer(const AssessmentRecord& one, const AssessmentRecord& other) {
+  const auto bytes_of = [](AssessmentRecord answer) {
+    answer.milliseconds = kNaN;
     ByteWriter writer;
-    transfer_answer(writer, said);
-    answers.emplace_back(method.name, writer.take());
-  }
-  return answers;
+    transfer_answer(writer, std::as_const(answer));
+    return writer.take();
+  };
+  return bytes_of(one) == bytes_of(other);
 }
 
 /// The record without answers; its loop, where it is to be assessed again, without what follows from it.
@@ -101,6 +95,21 @@ ExperimentRecord unanswered(ExperimentRecord record) {
 
 }  // namespace
 
+void KnownLoop::require_expected() const {
+  for (const AssessmentRecord& before : expected) {
+    const std::string& method = before.form->method().name;
+    for (const AssessmentRecord& now : record.assessments)
+      if (now.form->method().name == method && now.status != AssessmentStatus::failed &&
+          !is_same_answer(before, now))
+        throw BrokenPromise(
+            fmt::format("method '{}': threshold_option", method),
+            fmt::format("another answer on loop {} than with the threshold before", record.draw.index),
+            "answers that depend on the loop, the command with the content of its files and the "
+            "other options, and by their flags alone on this one; --fresh asks about all loops "
+            "again");
+  }
+}
+
 bool LoopMemory::may_keep(const Study& study, const RunOptions& options) {
   return !has_foreign_part(study) && !options.assessor && audited_share(study, options) == 0.0 &&
          options.store == StorePolicy::none;
@@ -114,6 +123,8 @@ LoopMemory::LoopMemory(const Study& study, const Study* calibration, const RunOp
       bytes_(study, AssessmentForms{}) {
   if (calibration != nullptr)
     calibration_bytes_.emplace(*calibration, AssessmentForms{});
+  for (const auto& form : forms_)
+    kept_[form->method().name] = kept_as(form->method(), options);
   if (!options.fresh)
     read();
 }
@@ -137,6 +148,17 @@ void LoopMemory::read() {
     }
     answers_[place.key] = Answers(named.begin(), named.end());
   }
+}
+
+LoopMemory::Kept LoopMemory::kept_as(const MethodDescription& method, const RunOptions& options) {
+  if (method.origin.empty())
+    return {.name = method.name};
+  // Variants, NAME:END, have the options of the method.
+  const auto option = options.threshold_options.find(method.name.substr(0, method.name.find(':')));
+  if (option == options.threshold_options.end())
+    return {};
+  return {.name = fmt::format("{}: {}", method.name, fingerprint_without(option->second, method)),
+          .threshold = threshold_in(method.given_options, option->second)};
 }
 
 const RecordBytes& LoopMemory::bytes_of(std::int64_t key) const {
@@ -189,16 +211,43 @@ KnownLoop LoopMemory::known_loop(std::int64_t key, const std::string& loop) cons
   const auto answers = answers_.find(key);
   for (AssessmentRecord& said : known.record.assessments) {
     const std::string& method = said.form->method().name;
-    if (answers == answers_.end() || answers->second.count(method) == 0 ||
-        !said.form->method().origin.empty()) {
+    const Kept& kept = kept_.find(method)->second;
+    if (answers == answers_.end() || kept.name.empty() || answers->second.count(kept.name) == 0) {
       known.unheard.push_back(method);
       continue;
     }
-    ByteReader answer(answers->second.find(method)->second);
+    ByteReader answer(answers->second.find(kept.name)->second);
     transfer_answer(answer, said);
     answer.require_end();
+    if (!kept.threshold)
+      continue;
+    flag_anew(said, *kept.threshold);
+    if (key % kCheckedLoops == 0) {
+      known.unheard.push_back(method);
+      known.expected.push_back(said);
+    }
   }
   return known;
+}
+
+/// The answers of these methods that may be kept.
+LoopMemory::NamedAnswers LoopMemory::answers_to_keep(const ExperimentRecord& record,
+                                                     const std::vector<std::string>& asked,
+                                                     bool by_process) const {
+  NamedAnswers answers;
+  for (const AssessmentRecord& said : record.assessments) {
+    const MethodDescription& method = said.form->method();
+    const std::string& name = kept_.find(method.name)->second.name;
+    // Ipopt, which only a process has, has a limit of time, and so has a program.
+    const bool is_kept = said.status == AssessmentStatus::failed ? !by_process && method.origin.empty()
+                                                                 : record.status == ExperimentStatus::ok;
+    if (name.empty() || !is_kept || std::find(asked.begin(), asked.end(), method.name) == asked.end())
+      continue;
+    ByteWriter writer;
+    transfer_answer(writer, said);
+    answers.emplace_back(name, writer.take());
+  }
+  return answers;
 }
 
 std::string LoopMemory::to_keep(std::int64_t key, const KnownLoop& loop) const {
@@ -213,7 +262,7 @@ std::string LoopMemory::to_keep(std::int64_t key, const KnownLoop& loop) const {
   return bytes_to_keep(deflated(content), answers_to_keep(loop.record, all, loop.by_process));
 }
 
-std::string LoopMemory::to_keep(const KnownLoop& known) {
+std::string LoopMemory::to_keep(const KnownLoop& known) const {
   return bytes_to_keep("", answers_to_keep(known.record, known.unheard, known.by_process));
 }
 

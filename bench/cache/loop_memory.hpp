@@ -18,6 +18,9 @@
 
 namespace mpm {
 
+/// A method with a threshold is asked again about every loop whose key is a multiple of it.
+inline constexpr std::int64_t kCheckedLoops = 16;
+
 /// What is known of a loop before it is run.
 struct KnownLoop {
   /// With its loop where its status is ok, and with the answers that are known.
@@ -25,13 +28,19 @@ struct KnownLoop {
   std::vector<std::string> unheard = {};  ///< methods whose answers are not known
   bool has_truth = true;                  ///< of an experiment that this program has run as a whole
   bool by_process = false;                ///< a worker process ran it, as the methods are to be asked by one
+  /// Answers that are known and asked for once more, to see that they are the same (require_expected()).
+  std::vector<AssessmentRecord> expected = {};
+
+  /// Throws BrokenPromise where a method has answered otherwise than with the threshold that it had before.
+  void require_expected() const;
 };
 
 /// The loops of one campaign that an earlier run has left in a cache, each with its truth, and what methods
 /// of this program have said of them: what decides on them is the program with the libraries and the
 /// processor that it runs on, text and seed of the study, the solver, and whether threads or worker processes
-/// run. Answers of outside programs are not kept, since they may depend on anything. Nor is anything that has
-/// failed, since that may be a matter of time.
+/// run. Answers of outside programs are not kept, since they may depend on anything, unless the method says
+/// what its threshold is (RunOptions::threshold_options): then they are kept for every threshold, and one
+/// loop in kCheckedLoops is asked again. Nor is anything that has failed, since that may be a matter of time.
 class LoopMemory {
  public:
   /// Whether the loops of this campaign may be kept: some have a plant or a controller of somebody else, are
@@ -52,7 +61,7 @@ class LoopMemory {
   /// What is to be kept of a loop that was not known, with its answers, as bytes. Empty: nothing.
   std::string to_keep(std::int64_t key, const KnownLoop& loop) const;
   /// The same of one that was known, once the methods that were not heard have answered.
-  static std::string to_keep(const KnownLoop& known);
+  std::string to_keep(const KnownLoop& known) const;
   /// Takes such bytes. One call at a time; find() may run beside it, and does not find them.
   void take(std::int64_t key, std::string bytes);
 
@@ -62,6 +71,16 @@ class LoopMemory {
  private:
   using Answers = std::map<std::string, std::string, std::less<>>;  ///< bytes by method
 
+  /// How the answers of a method are kept.
+  struct Kept {
+    std::string name = {};                 ///< its own with what else decides on them; empty: not at all
+    std::optional<double> threshold = {};  ///< by which their flags are made anew
+  };
+  using NamedAnswers = std::vector<std::pair<std::string, std::string>>;
+
+  static Kept kept_as(const MethodDescription& method, const RunOptions& options);
+  NamedAnswers answers_to_keep(const ExperimentRecord& record, const std::vector<std::string>& asked,
+                               bool by_process) const;
   const RecordBytes& bytes_of(std::int64_t key) const;
   std::optional<KnownLoop> kept_loop(std::int64_t key) const;
   KnownLoop known_loop(std::int64_t key, const std::string& loop) const;
@@ -71,6 +90,7 @@ class LoopMemory {
   std::shared_ptr<const CacheFolder> folder_;
   ShardIdentity loop_identity_, answer_identity_;
   AssessmentForms forms_;
+  std::map<std::string, Kept, std::less<>> kept_;  ///< by method
   RecordBytes bytes_;
   std::optional<RecordBytes> calibration_bytes_;
   std::map<std::int64_t, std::string> loops_;

@@ -159,10 +159,12 @@ LoopResult CampaignLoops::kept_result(std::int64_t key, ExperimentOutcome outcom
   return result;
 }
 
-LoopResult CampaignLoops::heard_result(std::int64_t key, KnownLoop known, ExperimentWork& work) const {
+LoopResult CampaignLoops::heard_result(std::int64_t key, KnownLoop known, const LoopMemory& memory,
+                                       ExperimentWork& work) const {
   if (!known.unheard.empty())
     work.assess(known.record, known.unheard);
-  std::string aside = LoopMemory::to_keep(known);
+  known.require_expected();
+  std::string aside = memory.to_keep(known);
   known.record.loop.reset();
   LoopResult result = this->result(key, {.record = std::move(known.record), .samples = {}, .audited = {}});
   result.aside = std::move(aside);
@@ -188,7 +190,7 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
               if (std::optional<KnownLoop> known = known_in(memory, key))
                 return known->by_process && !known->unheard.empty()
                            ? for_process
-                           : heard_result(key, *std::move(known), each.work(key));
+                           : heard_result(key, *std::move(known), *memory, each.work(key));
               ExperimentOutcome outcome = each.run(key);
               if (fall_back && outcome.record.status == ExperimentStatus::failed)
                 return for_process;
@@ -207,7 +209,7 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
                        std::int64_t key, const std::string& begun) {
       if (std::optional<KnownLoop> known = known_in(memory, key)) {
         known->by_process = true;  // the answers that are new are a process's
-        return heard_result(key, *std::move(known), worker->work(key));
+        return heard_result(key, *std::move(known), *memory, worker->work(key));
       }
       ExperimentOutcome outcome = begun.empty() ? worker->run(key) : bytes(key).from_bytes(begun);
       worker->experiments.audit(outcome);

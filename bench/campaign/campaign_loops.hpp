@@ -86,7 +86,8 @@ class CampaignLoops {
   LoopResult kept_result(std::int64_t key, ExperimentOutcome outcome, const LoopMemory* memory,
                          bool by_process) const;
   /// Of a loop that was known.
-  LoopResult heard_result(std::int64_t key, KnownLoop known, ExperimentWork& work) const;
+  LoopResult heard_result(std::int64_t key, KnownLoop known, const LoopMemory& memory,
+                          ExperimentWork& work) const;
   const OutcomeBytes& bytes(std::int64_t key) const;
   RecordRange records(const ShardStore& store, const StopRequest& stop, std::int64_t first,
                       std::int64_t count) const;

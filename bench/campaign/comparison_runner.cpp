@@ -139,7 +139,8 @@ RunOptions run_options(const Campaign& campaign, const ComparedLoops& loops,
           .leftovers = options.kept.leftovers,
           .shard_interval = options.kept.interval,
           .cache = options.cache,
-          .fresh = options.fresh};
+          .fresh = options.fresh,
+          .threshold_options = options.threshold_options};
 }
 
 /// The numbers of blind loops in the order in which they are made: that of the records, and then the

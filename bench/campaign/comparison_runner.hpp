@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,7 @@ struct ComparisonOptions {
   std::vector<std::filesystem::path> parts = {};     ///< folders of shards that others have left
   std::shared_ptr<const CacheFolder> cache = {};     ///< as RunOptions has it
   bool fresh = false;                                ///< the same
+  std::map<std::string, std::string, std::less<>> threshold_options = {};  ///< the same
 };
 
 /// What a comparison of a campaign is on.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/unfit_option.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/execution/run_options.hpp"
 #include "bench/files/outside_files.hpp"
@@ -97,6 +98,8 @@ KeptRun run_unless_kept(const fs::path& archive, const Study& study, const RunOp
     if (!campaign)
       campaign = run_and_keep(archive, study, options, hooks, command);
     return {.campaign = std::move(campaign)};
+  } catch (const BrokenPromise&) {
+    throw;
   } catch (const InputError& error) {
     remove_shards(archive);
     std::error_code no_file;

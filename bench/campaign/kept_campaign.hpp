@@ -43,7 +43,7 @@ struct KeptRun {
 
 /// One or the other: a study is run unless its archive is there, which `on_start` is told before. One that
 /// cannot be run (its basis case fails the self-check, a method refuses an option of it) leaves no archive.
-/// Errors: Interrupted, ArchiveError as run_and_keep().
+/// Errors: Interrupted, ArchiveError as run_and_keep(); BrokenPromise.
 KeptRun run_unless_kept(const std::filesystem::path& archive, const Study& study, const RunOptions& options,
                         const CampaignHooks& hooks, const std::string& command,
                         const std::function<void(bool is_there)>& on_start);

@@ -216,7 +216,8 @@ class Revisit {
   LoopResult heard(std::int64_t key, ExperimentRunner& runner, KnownLoop known) const {
     if (!known.unheard.empty())
       put_answers(runner.assess(known.record, known.unheard), known.record);
-    std::string aside = LoopMemory::to_keep(known);
+    known.require_expected();
+    std::string aside = loops_.memory->to_keep(known);
     LoopResult result = loops_.make(key, runner, std::move(known.record));
     result.aside = std::move(aside);
     return result;

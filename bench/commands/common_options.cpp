@@ -147,6 +147,15 @@ MethodPrograms take_method_files(const std::vector<std::string>& files) {
   return {names, table};
 }
 
+std::map<std::string, std::string, std::less<>> threshold_options(const std::vector<std::string>& files) {
+  std::map<std::string, std::string, std::less<>> options;
+  for (const std::string& file : files)
+    for (const MethodProgram& program : load_method_file(file))
+      if (!program.threshold_option.empty())
+        options[program.name] = program.threshold_option;
+  return options;
+}
+
 std::vector<std::string> with_programs(const std::vector<std::string>& named,
                                        const std::vector<std::string>& own,
                                        const std::vector<std::string>& programs) {

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +52,8 @@ struct MethodPrograms {
 };
 /// Starts each of them for its description. Throws InputError.
 MethodPrograms take_method_files(const std::vector<std::string>& files);
+/// RunOptions::threshold_options of these files.
+std::map<std::string, std::string, std::less<>> threshold_options(const std::vector<std::string>& files);
 /// The methods that assess when programs were given: those that the user names, or those of the study or
 /// suite, and the programs. Empty, as `named`, without programs.
 std::vector<std::string> with_programs(const std::vector<std::string>& named,

@@ -187,6 +187,7 @@ std::unique_ptr<Comparison> open_comparison(const ComparisonTask& task, std::fil
   ComparisonOptions comparison = task.comparison;
   comparison.cache = user_cache();
   comparison.fresh = options.fresh;
+  comparison.threshold_options = threshold_options(options.method_files);
   comparison.archive = task.digest;
   comparison.shards = std::move(shards);
   comparison.kept = {.leftovers = options.discard ? Leftovers::discard : Leftovers::resume,

@@ -172,6 +172,7 @@ ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   run.methods = table->known(run.methods.empty() ? suite.methods : run.methods,
                              run.methods.empty() ? "suite.methods" : "--methods");
   run.cache = user_cache();
+  run.threshold_options = threshold_options(options.method_files);
   const fs::path folder = options.output;
   const std::optional<PartNumber> part = part_of_option(options.shard);
   const std::vector<const SuiteCell*> cells = cells_of(suite, part);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,6 +55,9 @@ struct RunOptions {
   /// Where loops, and what methods of this program say of them, are kept for the next run; null: nowhere.
   std::shared_ptr<const CacheFolder> cache = {};
   bool fresh = false;  ///< what is kept there is made again
+  /// Of methods from outside, by name: the option that their scores are compared with
+  /// (MethodProgram::threshold_option). Of others no answer is kept there.
+  std::map<std::string, std::string, std::less<>> threshold_options = {};
 };
 
 /// The study that is run with these options: with their seed and methods, all of them spelled out. Throws

@@ -11,6 +11,7 @@ import socket
 import sys
 import tempfile
 import time
+import types
 
 from .identity import digest
 from .signals import Loop, told
@@ -20,7 +21,8 @@ READ_SIZE = 1 << 20  # bytes; most messages are smaller
 LONGEST_TIME = 86400  # seconds; a function of this process is stopped by its user
 
 
-def method(function=None, *, needs=(), answers=(), numbers=None, name=None, title=None, verdict=None, learn=None):
+def method(function=None, *, needs=(), answers=(), numbers=None, name=None, title=None, verdict=None, learn=None,
+           threshold_option=None):
     """Makes a method of assessment of a function of a loop (`Loop`), which returns the answer on it.
 
     `needs`, `answers`: what a loop must have, and what the method tells besides its verdict: words of
@@ -28,20 +30,22 @@ def method(function=None, *, needs=(), answers=(), numbers=None, name=None, titl
     further numbers, {name: scope} or {name: (scope, meaning, unit)} with the scope "loop", "cv" or "channel". `name`,
     `title`, `verdict`: for tables; the name and the first line of the docstring of the function without them. `learn`: a
     function of the context, called once for each benchmark; what it returns is `loop.learnt`. Keywords of the function
-    are the options of the method: `def mine(loop, *, threshold=1.5)`.
+    are the options of the method: `def mine(loop, *, threshold=1.5)`. `threshold_option`: the name of the option that
+    the scores are compared with, and that nothing else in an answer depends on; then a change of it asks the function
+    about few loops only (docs/bring_your_own.md).
 
     An answer must depend on its loop only, not on earlier ones.
     """
     def made(function):
         return Method(function, needs=needs, answers=answers, numbers=numbers or {}, name=name, title=title,
-                      verdict=verdict, learn=learn)
+                      verdict=verdict, learn=learn, threshold_option=threshold_option)
     return made if function is None else made(function)
 
 
 class Method:
     """A function of a loop with what a method says of itself; called, it is the function."""
 
-    def __init__(self, function, *, needs, answers, numbers, name, title, verdict, learn, options=None):
+    def __init__(self, function, *, needs, answers, numbers, name, title, verdict, learn, threshold_option=None, options=None):
         functools.update_wrapper(self, function)
         self.function, self.learn = function, learn
         self.name = name or function.__name__.strip("_").replace("<lambda>", "mine")
@@ -58,11 +62,20 @@ class Method:
         for option in self.options:
             if option not in known:
                 raise TypeError(f"method {self.name}: found the option '{option}'; allowed: {', '.join(known) or 'none'}")
+        self.threshold_option = threshold_option
+        if threshold_option is not None and not isinstance(self._threshold(), (int, float)):
+            raise TypeError(f"method {self.name}: threshold_option: found {threshold_option!r}; allowed: the name of a number "
+                            f"among its options ({', '.join(known) or 'none'})")
+
+    def _threshold(self):
+        default = inspect.signature(self.function).parameters.get(self.threshold_option)
+        return self.options.get(self.threshold_option, default and default.default)
 
     def with_options(self, name=None, **options):
         """The same method with other options, under another name for tables that have both."""
         return Method(self.function, needs=self.needs, answers=self.answers, numbers=self.numbers, name=name or self.name,
-                      title=name or self.title, verdict=self.verdict, learn=self.learn, options=self.options | options)
+                      title=name or self.title, verdict=self.verdict, learn=self.learn,
+                      threshold_option=self.threshold_option, options=self.options | options)
 
     def __call__(self, loop):
         if self.learn is not None and loop.learnt is None:
@@ -74,6 +87,19 @@ class Method:
                 "numbers": [{"name": name, **dict(zip(("scope", "meaning", "unit"),
                                                       [scope] if isinstance(scope, str) else scope))}
                             for name, scope in self.numbers.items()]}
+
+    def settings(self):
+        """The table of the method in a method file, but for its command. The code is an option, so that answers of
+        another function are never taken for those of this one; of the threshold it has nothing."""
+        function, threshold = self.function, {}
+        if self.threshold_option is not None:
+            threshold = {self.threshold_option: self._threshold()}
+            function = types.FunctionType(function.__code__, function.__globals__, function.__name__,
+                                          function.__defaults__, function.__closure__)
+            function.__kwdefaults__ = {name: value for name, value in (self.function.__kwdefaults__ or {}).items()
+                                       if name != self.threshold_option}
+        options = {**self.options, **threshold, "code": digest(function, self.learn, self.description())}
+        return {"options": options, **({"threshold_option": self.threshold_option} if threshold else {})}
 
     def told_apart_by(self):
         """What identity.digest() looks into."""
@@ -206,11 +232,10 @@ class Broker:
         self.environment = {"MPMBENCH_SOCKET": str(folder / "socket")}
         relay = pathlib.Path(__file__).with_name("relay.py")
         self.file = folder / "methods.toml"
-        # The code is an option, so that answers of another function are never taken for those of this one.
         self.file.write_text("".join(
             f"[method.{toml(name)}]\n"
             f"command = {toml([sys.executable, '-I', '-S', str(relay), name])}\n"
-            f"time_limit = {LONGEST_TIME}\noptions = {toml({**each.options, 'code': digest(each.function, each.learn)})}\n"
+            f"time_limit = {LONGEST_TIME}\n" + "".join(f"{key} = {toml(value)}\n" for key, value in each.settings().items())
             for name, each in self.methods.items()), encoding="utf-8")
         return self
 

@@ -13,7 +13,7 @@ import tempfile
 
 import h5py
 
-from archives import check_same
+from archives import check_same, contents
 
 PATIENCE = 300  # s, for a machine that is busy with other things
 
@@ -69,6 +69,10 @@ for line in sys.stdin:
         if message["ask"] == "loop":
             largest = max(abs(y) for row in message["loop"]["y"] for y in row)
             answer = {{"flagged": largest > options["threshold"], "score": largest}}
+            if options.get("odd") == "flags":
+                answer["flagged"] = not answer["flagged"]
+            if options.get("odd") == "scores":
+                answer = {{"flagged": largest > 0, "score": largest + options["threshold"]}}
         print(json.dumps({{"number": message["number"], **answer}}), flush=True)
 """
 
@@ -83,17 +87,17 @@ class Cached:
     def suite(self, seed, change=("", "")):
         (self.folder / "kept.toml").write_text(SUITE.replace("SEED", str(seed)).replace(*change))
 
-    def methods(self, **thresholds):
-        path = self.folder / "mine.toml"
+    def methods(self, declared=False, **thresholds):
+        path, more = self.folder / "mine.toml", 'threshold_option = "threshold"\n' if declared else ""
         path.write_text("".join(f'[method.{name}]\ncommand = ["{sys.executable}", "{self.folder}/mine.py"]\n'
-                                f"options = {{threshold = {threshold}}}\n" for name, threshold in thresholds.items()))
+                                f"options = {{threshold = {threshold}}}\n{more}" for name, threshold in thresholds.items()))
         return ["--method-file", path]
 
-    def run(self, output, *words, cache=None, program=None, **environment):
+    def run(self, output, *words, cache=None, program=None, code=0, **environment):
         command = [program or self.program, "suite", self.folder / "kept.toml", "-o", self.folder / output, "--json", *words]
         result = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=PATIENCE,
                                 env={**os.environ, "MPMBENCH_CACHE": str(cache or self.cache), **environment})
-        assert result.returncode == 0, (words, result.returncode, result.stdout, result.stderr)
+        assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
         return result
 
     def shown(self, *words, **environment):
@@ -110,6 +114,18 @@ class Cached:
             check_same(self.folder / output / f"{cell}.h5", self.folder / other / f"{cell}.h5")
         for name in "leaderboard.json", "kept.board.json", "leaderboard.csv":
             assert (self.folder / output / name).read_bytes() == (self.folder / other / name).read_bytes(), name
+
+    def mine(self, output):
+        board = json.loads((self.folder / output / "leaderboard.json").read_text())
+        return next(method for method in board["methods"] if method["name"] == "mine")
+
+    def check_same_but_origin(self, output, other):
+        """Of methods that are told apart by what a method file says of them."""
+        for cell in CELLS:
+            one, two = (contents(self.folder / each / f"{cell}.h5") for each in (output, other))
+            assert one.keys() == two.keys(), one.keys() ^ two.keys()
+            assert [name for name in one if one[name] != two[name]] in ([], ["methods/mine"]), (output, cell)
+        assert self.mine(output)["all"]["rates"] == self.mine(other)["all"]["rates"], output
 
     def times(self, output, method="sse"):
         """What the answers of a method cost, which differs from one time that it is asked to the next."""
@@ -175,6 +191,37 @@ def check_changed_method(cached):
     assert cached.asked()["start"] > 1
     assert json.loads((cached.folder / "changed/leaderboard.json").read_text()) != json.loads(
         (cached.folder / "mine/leaderboard.json").read_text())
+
+
+def check_threshold(cached):
+    """A method that says which option is its threshold is asked about few loops after a change of it."""
+    words = ["--join", "none", "--methods", "sse"]
+    cached.run("declared", *words, *cached.methods(declared=True, mine=1.0))
+    first = cached.asked()
+    assert first["loop"] >= 12 * len(CELLS), first
+    for output, threshold, jobs in ("higher", 1e9, 1), ("lower", 0.5, 2):
+        cached.run(output, *words, "--jobs", jobs, *cached.methods(declared=True, mine=threshold))
+        asked = cached.asked()
+        assert 0 < asked["loop"] <= first["loop"] / 6, (asked, first)
+        cached.run(f"{output} without", *words, *cached.methods(mine=threshold), cache="off")
+        assert cached.asked()["loop"] == first["loop"]
+        cached.check_same_but_origin(output, f"{output} without")
+    flags = [board["all"]["rates"]["detected"]["hits"] for board in map(cached.mine, ("higher", "lower"))]
+    assert flags[0] < flags[1], flags
+    # Another option asks about every loop, and so does --fresh.
+    cached.run("other option", *words, *cached.methods(declared=True, mine="0.5, other = 1"))
+    assert cached.asked()["loop"] == first["loop"]
+    cached.run("fresh", *words, "--fresh", *cached.methods(declared=True, mine=0.5))
+    assert cached.asked()["loop"] == first["loop"]
+    # A method that is not as it says is refused: at once, or when it is asked with another threshold.
+    refused = cached.run("flags", *words, *cached.methods(declared=True, mine='0.5, odd = "flags"'), code=2).stderr
+    assert "threshold_option 'threshold'" in refused and "flagged = " in refused, refused
+    cached.run("scores", *words, *cached.methods(declared=True, mine='0.5, odd = "scores"'))
+    refused = cached.run("scores", *words, *cached.methods(declared=True, mine='0.25, odd = "scores"'), code=2).stderr
+    assert "another answer on loop 0" in refused and "--fresh" in refused, refused
+    refused = cached.run("none", *words, *cached.methods(declared=True, mine='"high"'), code=2).stderr
+    assert "the name of a number among the options" in refused, refused
+    cached.asked()
 
 
 def check_never_stale(cached):
@@ -287,8 +334,8 @@ def check_at_once(cached):
 def main(program):
     with tempfile.TemporaryDirectory() as folder:
         cached = Cached(program, pathlib.Path(folder))
-        for check in (check_same_answers, check_changed_method, check_never_stale, check_compare, check_damage, check_folder,
-                      check_at_once):
+        for check in (check_same_answers, check_changed_method, check_threshold, check_never_stale, check_compare,
+                      check_damage, check_folder, check_at_once):
             check(cached)
             print(check.__name__, "done", flush=True)
 

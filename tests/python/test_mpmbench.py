@@ -265,6 +265,25 @@ class Methods(unittest.TestCase):
             said = json.loads(Session(mine).answer(json.dumps(ask)))
             self.assertEqual(said.get("signals"), told)
 
+    def test_a_threshold_is_an_option_and_no_part_of_the_code(self):
+        def made(limit, extra=0, needs=()):
+            @mpmbench.method(threshold_option="threshold", needs=needs)
+            def scored(loop, *, threshold=limit, more=extra):
+                return {"flagged": loop.y.var() > threshold, "score": loop.y.var() + more}
+            return scored.settings()
+
+        one = made(1.5)
+        self.assertEqual((one["threshold_option"], one["options"]["threshold"]), ("threshold", 1.5))
+        self.assertEqual(made(2.5), {**one, "options": {**one["options"], "threshold": 2.5}})
+        for other in made(1.5, extra=1), made(1.5, needs=["benchmark"]):
+            self.assertNotEqual(other["options"]["code"], one["options"]["code"])
+        with_option = mpmbench.method(lambda loop, *, threshold=1: True, threshold_option="threshold")
+        self.assertEqual(with_option.with_options(threshold=3).settings()["options"]["threshold"], 3)
+        self.assertEqual(mine.settings().keys(), {"options"})
+        for function in (lambda loop: True), (lambda loop, *, level=1: True), (lambda loop, *, threshold="high": True):
+            with self.assertRaisesRegex(TypeError, "threshold_option: found 'threshold'; allowed: the name of a number"):
+                mpmbench.method(function, threshold_option="threshold")
+
     def test_moving_windows_are_parts_of_their_record(self):
         windows = []
 
