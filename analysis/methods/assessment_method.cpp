@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/broken_promise.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
@@ -160,6 +161,8 @@ Assessment Assessor::asked_of_seen(const AssessedLoop& loop) {
     if (assessment.flagged && locates_cvs_ && !assessment.worst_cv())
       return Assessment::failed("it flags the loop and names no CV");
     return assessment;
+  } catch (const BrokenPromise&) {
+    throw;
   } catch (const InputError& error) {
     return Assessment::failed(error.what());
   }
@@ -185,6 +188,8 @@ void Assessor::learn() {
       seen_->benchmark = *of_benchmark_;
     }
     method_ = make_(seen());
+  } catch (const BrokenPromise&) {
+    throw;
   } catch (const InputError& error) {
     unusable_ = error.what();
     throw;

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/methods/broken_promise.hpp"
 #include "analysis/methods/source_probabilities.hpp"
-#include "analysis/methods/unfit_option.hpp"
 
 namespace mpm {
 namespace {

@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/broken_promise.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/threshold_rule.hpp"
-#include "analysis/methods/unfit_option.hpp"
 #include "base/non_finite.hpp"
 #include "base/sha256.hpp"
 #include "base/system/loaded_code.hpp"

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/broken_promise.hpp"
 #include "analysis/methods/method_table.hpp"
-#include "analysis/methods/unfit_option.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/execution/run_options.hpp"
 #include "bench/files/outside_files.hpp"

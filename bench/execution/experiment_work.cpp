@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/methods/broken_promise.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
-#include "analysis/methods/unfit_option.hpp"
 #include "analysis/records/trial_record.hpp"
 #include "base/system/surroundings.hpp"
 #include "base/system/thread_clock.hpp"
@@ -45,7 +45,7 @@ ExperimentOutcome ExperimentWork::run(std::int64_t index) {
         outcome.record.loop.reset();
     }
     outcome.samples = sampler.take();
-  } catch (const UnfitOption&) {
+  } catch (const BrokenPromise&) {
     throw;
   } catch (const std::exception& error) {
     if (is_of_surroundings(error))
@@ -60,7 +60,7 @@ void ExperimentWork::assess(ExperimentRecord& record, const std::vector<std::str
   ExperimentRunner& experiments = runner();
   try {
     put_answers(experiments.assess(record, methods), record);
-  } catch (const UnfitOption&) {
+  } catch (const BrokenPromise&) {
     throw;
   } catch (const std::exception& error) {
     if (is_of_surroundings(error))

@@ -6,9 +6,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/methods/broken_promise.hpp"
 #include "analysis/methods/method_messages.hpp"
 #include "analysis/methods/threshold_rule.hpp"
-#include "analysis/methods/unfit_option.hpp"
 #include "analysis/study_files/study_library.hpp"
 
 namespace mpm {
@@ -34,7 +34,7 @@ std::string refused_answer(const std::string& text, double threshold) {
     require_threshold_rule(answer, assessment_of(answer, study.plant, method, "method"), method, threshold,
                            "rule");
     return "";
-  } catch (const UnfitOption& error) {
+  } catch (const BrokenPromise& error) {
     return error.what();
   }
 }
@@ -105,7 +105,7 @@ TEST_CASE("threshold rule: an answer that contradicts it is refused") {
   MethodDescription method = method_with_threshold();
   CHECK_NOTHROW(require_threshold_rule(method, "rule"));
   method.tells_sources = true;
-  CHECK_THROWS_AS(require_threshold_rule(method, "rule"), UnfitOption);
+  CHECK_THROWS_AS(require_threshold_rule(method, "rule"), BrokenPromise);
 }
 
 }  // namespace mpm
