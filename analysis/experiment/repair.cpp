@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/experiment/repaired_model.hpp"
+#include "analysis/indicators/loop_cost.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "scenarios/loop/excitation.hpp"
@@ -12,9 +13,12 @@
 namespace mpm {
 namespace {
 
-Eigen::VectorXd variances_of(const Study& study, const Trajectory& loop) {
+Eigen::VectorXd variances_of(const Study& study, const Trajectory& loop,
+                             const std::vector<bool>& counted = {}) {
   if (loop.status != ControlStatus::ok)
     return {};
+  if (!counted.empty())
+    return counted_costs(study, loop, counted);
   return variances(loop.y, variance_centres(study, 0, loop.y.cols()));
 }
 
@@ -95,10 +99,12 @@ std::optional<ChannelRepair> channel_repair(const Study& study, const OperatingP
 }
 
 PromisedRepair promised_repair(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
-                               const ChannelRepair& repair, const QpSolverFactory& factory) {
-  return {.repair = repair,
-          .now = variances_of(study, promised(study, point, loop, factory)),
-          .predicted = variances_of(study, promised(with_repair(study, repair), point, loop, factory))};
+                               const ChannelRepair& repair, const QpSolverFactory& factory,
+                               const std::vector<bool>& counted) {
+  return {
+      .repair = repair,
+      .now = variances_of(study, promised(study, point, loop, factory), counted),
+      .predicted = variances_of(study, promised(with_repair(study, repair), point, loop, factory), counted)};
 }
 
 RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, const ExperimentDraw& draw,

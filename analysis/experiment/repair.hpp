@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -68,14 +69,16 @@ RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, cons
 
 /// What a repaired channel promises from a record alone, all that is known in a plant: variances of the CVs
 /// as RepairedLoop has them, with the errors of the record under the model of the study (`now`) and under the
-/// repaired one (`predicted`).
+/// repaired one (`predicted`). With samples that count they are counted_costs(): what a CV costs its
+/// controller, over these samples alone.
 struct PromisedRepair {
   ChannelRepair repair;
   Eigen::VectorXd now, predicted;
 };
 
 PromisedRepair promised_repair(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
-                               const ChannelRepair& repair, const QpSolverFactory& factory);
+                               const ChannelRepair& repair, const QpSolverFactory& factory,
+                               const std::vector<bool>& counted = {});
 
 /// The channel that the method would have repaired: that of the mismatch it names, or of a method that names
 /// none the first channel that it flags. None of a loop that it does not flag.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "scenarios/loop/closed_loop.hpp"
@@ -23,8 +25,17 @@ struct LoopCost {
   double total() const { return cv.sum() + effort; }
 };
 
-/// The cost of a loop of `study`, whose status must be ok.
-LoopCost loop_cost(const Study& study, const Trajectory& loop);
+/// The cost of a loop of `study`, whose status must be ok, over the samples that count; empty: all of them.
+LoopCost loop_cost(const Study& study, const Trajectory& loop, const std::vector<bool>& counted = {});
+
+/// What a CV costs that integrates and has soft limits as well as a setpoint.
+enum class LevelCost {
+  as_others,  ///< the distance to its setpoint, as any CV with one
+  in_range,   ///< that outside of its soft limits: within them a level is there to wander
+};
+
+/// Does the CV cost the distance to a setpoint, and not that outside of its range?
+bool costs_by_setpoint(const Study& study, Eigen::Index cv, LevelCost levels);
 
 /// What each CV costs as its controller has it, without weights, ny: the mean over the samples from `first`
 /// on of (y - y_set)^2 for a CV with a setpoint, and of the squared distance outside of its soft limits for
@@ -36,10 +47,15 @@ LoopCost loop_cost(const Study& study, const Trajectory& loop);
 /// | y      | y     | ny x N | of the CV                         |
 /// | y_set  | y_set | ny x N | empty where no CV has a setpoint  |
 Eigen::VectorXd cv_costs(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
-                         const Eigen::Ref<const Eigen::MatrixXd>& y_set, Eigen::Index first = 0);
+                         const Eigen::Ref<const Eigen::MatrixXd>& y_set, Eigen::Index first = 0,
+                         LevelCost levels = LevelCost::as_others);
 
 /// What is added to both costs before they are compared, ny: of a CV without a setpoint, which costs nothing
 /// within its limits, the variance of its noise; of one with a setpoint, which has its noise in its cost, 0.
-Eigen::VectorXd cost_floor(const Study& study);
+Eigen::VectorXd cost_floor(const Study& study, LevelCost levels = LevelCost::as_others);
+
+/// What the CVs of a loop cost over the samples that count, to be compared with another loop: cv_costs() and
+/// cost_floor() with levels in their range, ny.
+Eigen::VectorXd counted_costs(const Study& study, const Trajectory& loop, const std::vector<bool>& counted);
 
 }  // namespace mpm

@@ -44,7 +44,7 @@ std::vector<CvCost> cost_of_record(const Study& study, const Eigen::Ref<const Ei
   for (Eigen::Index k = from; k < N; ++k) {
     const Limits soft = soft_limits(study, k);
     for (Eigen::Index cv = 0; cv < ny; ++cv) {
-      const bool has_setpoint = controller.has_setpoint(cv);
+      const bool has_setpoint = costs_by_setpoint(study, cv, LevelCost::in_range);
       if (std::isnan(y(cv, k)) || is_off(study, VariableSort::cv, cv, k) ||
           !(has_setpoint || controller.has_soft_limit(cv)))
         continue;
@@ -54,10 +54,11 @@ std::vector<CvCost> cost_of_record(const Study& study, const Eigen::Ref<const Ei
       samples(cv) += 1.0;
     }
   }
-  const Eigen::VectorXd now = cv_costs(study, y.leftCols(N), y_set, from);
+  const Eigen::VectorXd now = cv_costs(study, y.leftCols(N), y_set, from, LevelCost::in_range);
   std::vector<CvCost> costs;
   for (Eigen::Index cv = 0; cv < ny; ++cv) {
-    CvCost& cost = costs.emplace_back(CvCost{.cv = cv, .has_setpoint = controller.has_setpoint(cv)});
+    CvCost& cost = costs.emplace_back(
+        CvCost{.cv = cv, .has_setpoint = costs_by_setpoint(study, cv, LevelCost::in_range)});
     cost.now = samples(cv) > 0.0 ? now(cv) : kNaN;
     cost.designed = samples(cv) > 0.0 ? designed(cv) / samples(cv) : kNaN;
     const double floor = cost.has_setpoint ? 0.0 : noise(cv);

@@ -14,7 +14,8 @@ namespace mpm {
 ///
 ///   ratio = (now + f)/(designed + f),   now = cv_costs(y),
 ///
-/// with f = 0 for a CV with a setpoint and v for one in a range (cost_floor()), and
+/// with f = 0 for a CV with a setpoint and v for one in a range (cost_floor()), a level with both in its
+/// range (LevelCost::in_range), and
 ///
 ///   designed = mean (y0 - y_set)^2 + v   of a CV with a setpoint,
 ///   designed = mean E dist(y0 + n)^2     of one in a range,

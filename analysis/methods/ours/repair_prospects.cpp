@@ -29,6 +29,7 @@ constexpr double kFaintShare = 1e-3;
 /// The record, and what it says of the model of each CV.
 struct RepairProspects::Seen {
   const AssessedLoop& whole;
+  const std::vector<bool>& counted;
   Eigen::MatrixXd inputs;
   std::vector<ModelErrors> models = {};
 
@@ -71,10 +72,11 @@ RepairProspects::RepairProspects(const Study& study, const OperatingPoint& point
   initial_.head(point.u.size()) = point.u;
 }
 
-std::optional<std::vector<RepairProspect>> RepairProspects::of(
-    const AssessedLoop& loop, const std::optional<RepairedChannel>& given) const {
+std::optional<std::vector<RepairProspect>> RepairProspects::of(const AssessedLoop& loop,
+                                                               const std::optional<RepairedChannel>& given,
+                                                               const std::vector<bool>& counted) const {
   const AssessedLoop& whole = loop.from_start();
-  Seen seen{.whole = whole, .inputs = model_inputs(whole)};
+  Seen seen{.whole = whole, .counted = counted, .inputs = model_inputs(whole)};
   for (Eigen::Index cv = 0; cv < study_.cv_count(); ++cv) {
     const Eigen::RowVectorXd e = errors_in_window(loop, cv);
     if ((!e.array().isNaN()).count() < kFewestNoiseSamples)
@@ -145,12 +147,12 @@ void RepairProspects::run(const Seen& seen, std::vector<RepairProspect>& prospec
       }
     }
     left = from_washout(study_, left);
-    const std::optional<Outcome> now = outcome(study_.plant.G, plant, seen.whole.d, left);
+    const std::optional<Outcome> now = outcome(study_.plant.G, plant, seen, left);
     for (std::size_t i = 0; i < prospects.size() && now; ++i) {
       const RepairedChannel& repair = prospects[i].repair;
       TransferMatrix repaired = study_.plant.G;
       repaired(repair.channel.cv, repair.channel.mv) = repair.model;
-      const std::optional<Outcome> then = outcome(repaired, plant, seen.whole.d, left);
+      const std::optional<Outcome> then = outcome(repaired, plant, seen, left);
       const double gain = then ? (now->cost - then->cost) / now->cost : kNaN;
       if (!std::isfinite(gain))
         continue;
@@ -167,13 +169,13 @@ void RepairProspects::run(const Seen& seen, std::vector<RepairProspect>& prospec
 
 std::optional<RepairProspects::Outcome> RepairProspects::outcome(const TransferMatrix& model,
                                                                  const TransferMatrix& plant,
-                                                                 const Eigen::MatrixXd& d,
+                                                                 const Seen& seen,
                                                                  const Eigen::MatrixXd& disturbance) const {
   Study study = study_;
   study.plant.G = model;
   const Trajectory loop =
       run_closed_loop(study, plant,
-                      {.d = d,
+                      {.d = seen.whole.d,
                        .noise = Eigen::MatrixXd::Zero(disturbance.rows(), disturbance.cols()),
                        .y_d = disturbance,
                        .y_set = setpoints(study_),
@@ -181,8 +183,9 @@ std::optional<RepairProspects::Outcome> RepairProspects::outcome(const TransferM
                       factory_);
   if (loop.status != ControlStatus::ok)
     return std::nullopt;
-  return Outcome{loop_cost(study_, loop).total(),
-                 variances(loop.y, variance_centres(study_, 0, loop.y.cols()))};
+  return Outcome{loop_cost(study_, loop, seen.counted).total(),
+                 seen.counted.empty() ? variances(loop.y, variance_centres(study_, 0, loop.y.cols()))
+                                      : counted_costs(study_, loop, seen.counted)};
 }
 
 std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects) {

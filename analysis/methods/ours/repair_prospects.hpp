@@ -41,7 +41,8 @@ struct RepairedChannel {
 struct RepairProspect {
   RepairedChannel repair;
   std::vector<double> gains;  ///< ascending, of the plants on which all loops run to their end; may be empty
-  /// ny: mean variance of a CV on these plants after the repair over that before it.
+  /// ny: mean variance of a CV on these plants after the repair over that before it; with samples that count
+  /// its counted_costs().
   Eigen::VectorXd variance_ratio = {};
 
   /// Expected; NaN without a plant.
@@ -67,9 +68,11 @@ class RepairProspects {
   RepairProspects(const Study& study, const OperatingPoint& point, const QpSolverFactory& factory);
 
   /// Of the channels whose errors explain most of their CV, in this order, and of the given one; none where a
-  /// CV has too few samples. Costs 1 + channels closed loops a draw.
+  /// CV has too few samples. Costs 1 + channels closed loops a draw. `counted`: the samples at which loops
+  /// cost something; empty: all.
   std::optional<std::vector<RepairProspect>> of(const AssessedLoop& loop,
-                                                const std::optional<RepairedChannel>& given = {}) const;
+                                                const std::optional<RepairedChannel>& given = {},
+                                                const std::vector<bool>& counted = {}) const;
 
  private:
   struct Seen;
@@ -78,8 +81,8 @@ class RepairProspects {
   std::vector<RepairProspect> candidates(const Seen& seen, const std::optional<RepairedChannel>& given) const;
   void run(const Seen& seen, std::vector<RepairProspect>& prospects) const;
   Eigen::RowVectorXd response(const Seen& seen, const TransferFunction& channel, Eigen::Index input) const;
-  std::optional<Outcome> outcome(const TransferMatrix& model, const TransferMatrix& plant,
-                                 const Eigen::MatrixXd& d, const Eigen::MatrixXd& disturbance) const;
+  std::optional<Outcome> outcome(const TransferMatrix& model, const TransferMatrix& plant, const Seen& seen,
+                                 const Eigen::MatrixXd& disturbance) const;
 
   const Study& study_;
   const AdequacyOptions& options_;
