@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -85,6 +86,7 @@ class RecordReader {
         group(cvs, [&](const std::string& name) { return companion(name, data_.y_sim, "y_sim"); });
     record_.u_off = off(mvs);
     record_.y_off = off(cvs);
+    signals_.tell_unnamed();
     read_candidates();
     leave_out_without_controller();
     refuse_missing();
@@ -175,24 +177,55 @@ class RecordReader {
     }
   }
 
+  /// At which samples no variable is the controller's: its own column says so, or operators have every MV.
+  Eigen::Array<bool, 1, Eigen::Dynamic> without_controller() const {
+    Eigen::Array<bool, 1, Eigen::Dynamic> off =
+        Eigen::Array<bool, 1, Eigen::Dynamic>::Constant(grid_.samples(), false);
+    if (record_.u_off.rows() > 0)
+      off = (record_.u_off.array() == 1.0).colwise().all();
+    if (!data_.controller_on.empty())
+      off = off || grid_.held(signals_.controller_on()).array() != 1.0;
+    return off;
+  }
+
+  /// A sample without the controller is one of which nothing was recorded: it counts nowhere.
   void leave_out_without_controller() {
-    if (data_.controller_on.empty())
+    const auto off = without_controller();
+    const double share = off.cast<double>().mean();
+    if (share == 1.0)
+      refuse_without_controller();
+    if (share == 0.0)
       return;
-    const Eigen::RowVectorXd is_on = grid_.held(signals_.controller_on());
-    const double off = (is_on.array() != 1.0).cast<double>().mean();
-    if (off == 1.0) {
-      const std::size_t column = rows_.file.column("", data_.controller_on);
-      throw InputError(
-          rows_.file.file + ": data.controller_on",
-          fmt::format("'{}' throughout", cut_utf8(rows_.file.columns[column].front(), kShownBytes)),
-          fmt::format("a period with one of data.on_values: {}", fmt::join(data_.on_values, ", ")));
+    record_.warnings.push_back(fmt::format(
+        "the controller is off in {} of the samples: they count nowhere, nor do those behind them until the "
+        "slowest channel has settled",
+        percent(share)));
+    Eigen::Index from = 0;
+    while (off(from))
+      ++from;
+    for (Eigen::Index k = 0; k < grid_.samples(); ++k) {
+      if (!off(k)) {
+        from = k;
+        continue;
+      }
+      record_.y.col(k).setConstant(kNaN);
+      for (Eigen::MatrixXd PlantRecord::*const signals :
+           {&PlantRecord::u, &PlantRecord::d, &PlantRecord::u_target, &PlantRecord::y_set,
+            &PlantRecord::lower, &PlantRecord::upper, &PlantRecord::u_off, &PlantRecord::y_off})
+        if (Eigen::MatrixXd& values = record_.*signals; values.size() > 0)
+          values.col(k) = values.col(from);
     }
-    if (off > 0.0)
-      record_.warnings.push_back(
-          fmt::format("the controller is off in {} of the samples: they are not judged", percent(off)));
-    for (Eigen::Index k = 0; k < grid_.samples(); ++k)
-      if (is_on(k) != 1.0)
-        record_.y.col(k).setConstant(kNaN);
+  }
+
+  [[noreturn]] void refuse_without_controller() const {
+    if (data_.controller_on.empty())
+      throw InputError(rows_.file.file + ": data.mode", "no row in which the controller has an MV",
+                       fmt::format("a period with one of data.mode_on: {}", fmt::join(data_.mode_on, ", ")));
+    const std::size_t column = rows_.file.column("", data_.controller_on);
+    throw InputError(
+        rows_.file.file + ": data.controller_on",
+        fmt::format("'{}' throughout", cut_utf8(rows_.file.columns[column].front(), kShownBytes)),
+        fmt::format("a period with one of data.on_values: {}", fmt::join(data_.on_values, ", ")));
   }
 
   void refuse_missing(const std::string& name, double missing) const {

@@ -17,6 +17,7 @@ namespace {
 constexpr std::array<std::string_view, 5> kQualityWords{"quality", "status", "qual", "q", "qc"};
 constexpr std::array<std::string_view, 5> kValueWords{"pv", "value", "val", "sp", "op"};
 constexpr std::string_view kBetween = "._ -/:";
+constexpr std::array<std::string_view, 3> kTagEndings{"pv", "sp", "op"};
 
 template <std::size_t size>
 bool is_word_of(std::string_view word, const std::array<std::string_view, size>& words) {
@@ -69,6 +70,19 @@ bool are_qualities(const RecordColumns& file, std::size_t column) {
     any_good = any_good || is_good_opc(file, cell, codes);
   }
   return any_good && any_code != any_word;  // words, or codes
+}
+
+std::optional<std::size_t> column_beside(const RecordColumns& file, std::size_t column,
+                                         const std::string& ending) {
+  const std::string& name = file.names[column];
+  const std::string own = in_lower_case(name);
+  const bool is_part_of_tag =
+      own.size() > kTagEndings[0].size() &&
+      std::any_of(kTagEndings.begin(), kTagEndings.end(),
+                  [&own](std::string_view of_value) { return own.ends_with(of_value); });
+  const std::string tag = is_part_of_tag ? name.substr(0, name.size() - kTagEndings[0].size()) : name + ".";
+  const auto found = file.find(tag + ending);
+  return found == column ? std::nullopt : found;
 }
 
 void name_repeated_qualities(RecordColumns& file) {

@@ -248,6 +248,33 @@ void SignalReader::look_at_quality(const std::string& variable, std::size_t qual
   }
 }
 
+void SignalReader::tell_unnamed() {
+  const std::vector<PlantModel::Variable>&cvs = study_.plant.cvs, &mvs = study_.plant.mvs;
+  for (std::size_t cv = 0; cv < cvs.size(); ++cv) {
+    const std::string& name = cvs[cv].name;
+    if (study_.controller.has_setpoint(static_cast<Eigen::Index>(cv)) && !data_.setpoint.contains(name) &&
+        !file_.find("y_set." + name))
+      tell_beside(name, "y", "SP", "setpoint", "the setpoint of the study counts throughout");
+  }
+  for (const auto* variables : {&cvs, &mvs})
+    for (const PlantModel::Variable& variable : *variables)
+      if (!data_.mode.contains(variable.name))
+        tell_beside(variable.name, variables == &mvs ? "u" : "y", "MODE", "mode",
+                    "what operators did with it counts as the controller's");
+}
+
+void SignalReader::tell_beside(const std::string& variable, const char* prefix, const char* ending,
+                               const char* key, const char* why) {
+  const auto found = column_beside(file_, column_of(variable, prefix), ending);
+  if (!found || is_named(*found))
+    return;
+  const std::string name = cut_name(file_.names[*found]);
+  warnings_.push_back(
+      fmt::format("the column '{}' stands beside that of {}, and nothing names it, so that {}: "
+                  "data.{} = {{{} = \"{}\"}} does",
+                  name, variable, why, key, variable, name));
+}
+
 /// Has [data] another use for this column?
 bool SignalReader::is_named(std::size_t column) const {
   const std::string& name = file_.names[column];

@@ -46,6 +46,9 @@ class SignalReader {
   /// said.
   RowSignal in_use(const std::string& variable) const;
 
+  /// Warns of setpoints and modes of variables that stand in the file and that [data] does not name.
+  void tell_unnamed();
+
   bool has_numbers(std::size_t column) const;
   /// "FILE: data.KEY.VARIABLE"
   std::string where(const std::string& key, const std::string& variable) const;
@@ -62,6 +65,8 @@ class SignalReader {
   void look_at_quality(const std::string& variable, std::size_t quality, RowSignal& signal);
   BadRows bad_rows(std::size_t quality, const RowSignal& signal, bool named) const;
   bool is_named(std::size_t column) const;
+  void tell_beside(const std::string& variable, const char* prefix, const char* ending, const char* key,
+                   const char* why);
   bool is_word(const std::string& cell, const std::vector<std::string>& words) const;
 
   const Study& study_;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -129,6 +130,48 @@ TEST_CASE("modes hold until the next one, and say what operators had taken", "[r
       read_plant_record(study_with("mode = {hot = 'HC.MODE'}"), text, "r.csv"),
       "r.csv: data.mode.hot: found no value in 'HC.MODE'; allowed: a word of data.mode_on where the "
       "controller has hot");
+}
+
+TEST_CASE("a row without the controller is one of which nothing was recorded", "[records]") {
+  const std::string by_column =
+      "time,level,heat,hot,cold,drain,on\n0,1,5,9,1,7,1\n1,2,5,8,1,7,1\n2,90,6,0,0,0,0\n3,95,6,0,0,0,0\n"
+      "4,3,5,7,1,6,1\n5,4,5,6,1,6,1\n";
+  const std::string by_modes =
+      "time,level,heat,hot,cold,drain,H,C\n0,1,5,9,1,7,auto,auto\n1,2,5,8,1,7,auto,auto\n"
+      "2,90,6,0,0,0,man,man\n3,95,6,0,0,0,man,man\n4,3,5,7,1,6,auto,auto\n5,4,5,6,1,6,auto,man\n";
+  for (const auto& [text, data] : {std::pair{by_column, "controller_on = 'on'\nmost_missing = 0.5"},
+                                   {by_modes, "mode = {hot = 'H', cold = 'C'}\nmost_missing = 0.5"}}) {
+    const PlantRecord record = read_plant_record(study_with(data), text, "r.csv");
+    CHECK(record.y.middleCols(2, 2).array().isNaN().all());
+    CHECK_FALSE(record.y.col(4).hasNaN());
+    for (const Eigen::Index k : {2, 3}) {
+      CHECK(record.u.col(k) == record.u.col(1));
+      CHECK(record.d.col(k) == record.d.col(1));
+      CHECK_FALSE(record.has_mv_off(0, k));
+    }
+    CHECK(std::any_of(record.warnings.begin(), record.warnings.end(), [](const std::string& warning) {
+      return warning.find("the controller is off in 33.3 % of the samples: they count nowhere") == 0;
+    }));
+  }
+  CHECK(read_plant_record(study_with("mode = {hot = 'H', cold = 'C'}\nmost_missing = 0.5"), by_modes, "r.csv")
+            .has_mv_off(1, 5));
+  CHECK_THROWS_WITH(
+      read_plant_record(study_with("mode = {hot = 'H', cold = 'C'}\nmode_on = ['cas']"), by_modes, "r.csv"),
+      Catch::Contains("no row in which the controller has an MV"));
+}
+
+TEST_CASE("setpoints and modes that nothing names are pointed out", "[records]") {
+  const std::string text =
+      "time,level,heat,heat.SP,hot,hot.MODE,cold,drain\n0,1,5,5,9,auto,1,7\n1,2,6,4,8,auto,1,7\n";
+  const auto told = [&text](const std::string& data) {
+    std::string all;
+    for (const std::string& warning : read_plant_record(study_with(data), text, "r.csv").warnings)
+      all += warning + "\n";
+    return all;
+  };
+  CHECK_THAT(told(""), Catch::Contains("data.mode = {hot = \"hot.MODE\"}"));
+  CHECK_THAT(told("mode = {hot = 'hot.MODE'}"), !Catch::Contains("data.mode = "));
+  CHECK_THAT(told("candidates = ['heat.SP']"), !Catch::Contains("data.setpoint = "));
 }
 
 TEST_CASE("values are deviations in the unit of the study", "[records]") {
