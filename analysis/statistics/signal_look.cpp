@@ -45,18 +45,32 @@ double SignalLook::noise() const {
   return bends.empty() ? 0.0 : kOfNormal * upper_median(std::move(bends)) / std::sqrt(6.0);
 }
 
-std::optional<std::size_t> SignalLook::period() const {
-  constexpr double kNearlyAlways = 0.9;
+std::map<std::size_t, std::size_t> SignalLook::gaps() const {
   constexpr std::size_t kFewest = 10;  // new values
   const std::vector<std::size_t> rows = fresh();
   std::map<std::size_t, std::size_t> counts;
-  for (std::size_t i = 1; i < rows.size(); ++i)
+  for (std::size_t i = 1; i < rows.size() && rows.size() > kFewest; ++i)
     ++counts[rows[i] - rows[i - 1]];
-  for (const auto& [gap, count] : counts)
-    if (gap > 1 && rows.size() > kFewest &&
-        static_cast<double>(count) >= kNearlyAlways * static_cast<double>(rows.size() - 1))
-      return gap;
-  return std::nullopt;
+  return counts;
+}
+
+std::optional<std::size_t> SignalLook::usual_gap() const {
+  const std::map<std::size_t, std::size_t> counts = gaps();
+  const auto most = std::max_element(counts.begin(), counts.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == counts.end() ? std::nullopt : std::optional(most->first);
+}
+
+std::optional<std::size_t> SignalLook::period() const {
+  constexpr double kNearlyAlways = 0.9;
+  const std::map<std::size_t, std::size_t> counts = gaps();
+  std::size_t all = 0;
+  for (const auto& each : counts)
+    all += each.second;
+  const std::optional<std::size_t> gap = usual_gap();
+  return gap && *gap > 1 && static_cast<double>(counts.at(*gap)) >= kNearlyAlways * static_cast<double>(all)
+             ? gap
+             : std::nullopt;
 }
 
 double SignalLook::share_at(bool upper) const {

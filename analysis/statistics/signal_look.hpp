@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -28,8 +29,16 @@ struct SignalLook {
   /// The number of values from one new value to the next, where it is nearly always the same and more than
   /// one.
   std::optional<std::size_t> period() const;
+  /// The most frequent number of values from one new value to the next; none for fewer than 11 new values.
+  /// What is only rounded repeats itself by chance, and has 1.
+  std::optional<std::size_t> usual_gap() const;
   /// The share of the values in the tenth of the range at one end.
   double share_at(bool upper) const;
+
+ private:
+  /// How often each number of values from one new value to the next is there; empty for fewer than 11 new
+  /// values.
+  std::map<std::size_t, std::size_t> gaps() const;
 };
 
 }  // namespace mpm

@@ -236,6 +236,13 @@ Study recorded_study(const Study& study, const PlantRecord& record, const std::v
   return study_of(text, name, study.assessment.table);
 }
 
+Study with_analysers(const Study& study, const std::map<std::string, int>& periods) {
+  toml::table text = parse_toml(study.source, study.name);
+  for (const auto& [cv, period] : periods)
+    table_in(table_in(table_in(text, "controller"), "cv"), cv).insert_or_assign("analyser_period", period);
+  return study_of(text, study.name, study.assessment.table);
+}
+
 Study trial_study(const Study& recorded, const TrialPlan& plan) {
   toml::table text = parse_toml(recorded.source, recorded.name);
   const ExperimentCounts& counts = recorded.experiments;

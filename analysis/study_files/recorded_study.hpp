@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,10 @@ namespace mpm {
 /// short for the windows of the study.
 Study recorded_study(const Study& study, const PlantRecord& record, const std::vector<std::string>& methods,
                      const std::optional<MonitoringOptions>& monitoring);
+
+/// The study with CVs that an analyser measures with this period, samples of the controller, each. Errors: as
+/// parse_study().
+Study with_analysers(const Study& study, const std::map<std::string, int>& periods);
 
 /// The loops of a calibration run.
 struct TrialPlan {
