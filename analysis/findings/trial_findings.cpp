@@ -15,6 +15,14 @@ bool has_answer(const ExperimentRecord& record, std::size_t method) {
   return record.status == ExperimentStatus::ok && record.assessments[method].answered();
 }
 
+/// Of one loop alone there is no other half: it counts against itself.
+std::array<double, 2> thresholds_of_halves(const std::vector<double>& scores) {
+  std::array<std::vector<double>, 2> halves;
+  for (std::size_t place = 0; place < scores.size(); ++place)
+    halves[place % 2].push_back(scores[place]);
+  return {trial_threshold(halves[0]), trial_threshold(halves[1].empty() ? halves[0] : halves[1])};
+}
+
 }  // namespace
 
 double trial_threshold(const std::vector<double>& healthy, double false_alarms) {
@@ -31,12 +39,15 @@ TrialFindings trial_findings(const Study& trial, std::size_t method, const Recor
     if (has_answer(record, method) && record.draw.kind == ExperimentKind::healthy)
       scores.push_back(record.assessments[method].score);
   });
-  const double threshold = trial_threshold(scores);
+  TrialFindings found{.threshold = trial_threshold(scores), .of_half = thresholds_of_halves(scores)};
   const FaultSource named = named_source(said);
   std::int64_t same = 0, right = 0;
   const Collector<MethodRates> rates = rate_collector(trial, method);
+  std::size_t healthy = 0;
   records.each([&](ExperimentRecord record) {
     AssessmentRecord& of_loop = record.assessments[method];
+    const bool is_healthy = has_answer(record, method) && record.draw.kind == ExperimentKind::healthy;
+    const double threshold = is_healthy ? found.threshold_for(healthy++) : found.threshold;
     if (of_loop.answered() && !std::isnan(threshold))
       of_loop.flagged = of_loop.score > threshold;
     rates.add(record);
@@ -50,8 +61,10 @@ TrialFindings trial_findings(const Study& trial, std::size_t method, const Recor
   const auto as_high =
       std::count_if(scores.begin(), scores.end(), [&said](double score) { return score >= said.score; });
   const double confidence = trial.aggregate.confidence;
-  return {threshold, rates.result(), rate(as_high, std::ssize(scores), confidence),
-          rate(right, same, confidence)};
+  found.rates = rates.result();
+  found.as_high = rate(as_high, std::ssize(scores), confidence);
+  found.same_source = rate(right, same, confidence);
+  return found;
 }
 
 }  // namespace mpm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -17,11 +18,17 @@ struct TrialFindings {
   /// The conformal threshold of the scores of the loops without a fault at kTrialFalseAlarms; with too few of
   /// them the largest score. NaN without such loops.
   double threshold;
-  /// Over all of these loops. One counts as flagged if its score is above the threshold; without one if the
+  /// The same of every second loop without a fault, from the first and from the second one on.
+  std::array<double, 2> of_half;
+  /// Over all of these loops. One counts as flagged if its score is above threshold_for(); without one if the
   /// method flags it.
-  MethodRates rates;
-  Rate as_high;      ///< loops without a fault whose score is as high as that of the record
-  Rate same_source;  ///< of the flagged loops with the source that the answer names, those that have it
+  MethodRates rates = {};
+  Rate as_high = {};      ///< loops without a fault whose score is as high as that of the record
+  Rate same_source = {};  ///< of the flagged loops with the source that the answer names, those that have it
+
+  /// The threshold against which the `place`-th loop without a fault counts where something is said of these
+  /// loops: that of the other half, because it has helped to set `threshold` itself.
+  double threshold_for(std::size_t place) const { return of_half[1 - place % 2]; }
 };
 
 /// `said` is the answer on the record by the method in place `method` of the assessments of each of

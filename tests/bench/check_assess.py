@@ -382,7 +382,8 @@ def check_healthy(bench, study):
     assert healthy["found"] == "nothing" and not healthy["methods"][0]["flagged"], healthy["verdict"]
     assert healthy["unjudged"] > 0 and healthy["controller"]["alike"], healthy["controller"]
     rates = healthy["model"]["trust"]["rates"]
-    assert rates["false_alarm_healthy"]["hits"] <= 2 and rates["detected_impact"]["value"] > 0.5, rates
+    # Each half of 25 against the largest score of the other half: on average one of each is above it.
+    assert rates["false_alarm_healthy"]["hits"] <= 8 and rates["detected_impact"]["value"] > 0.5, rates
 
 
 def check_further_methods(bench, study):

@@ -9,6 +9,7 @@
 
 #include "analysis/findings/method_pairs.hpp"
 #include "analysis/findings/method_rates.hpp"
+#include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/literature/badwe2009.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/study_files/study_library.hpp"
@@ -75,6 +76,19 @@ void check_rate(const Rate& rate, std::int64_t hits, std::int64_t total) {
 constexpr ExperimentKind kMpm = ExperimentKind::mpm, kUd = ExperimentKind::ud, kBoth = ExperimentKind::mpm_ud,
                          kNone = ExperimentKind::healthy;
 constexpr FaultSource kIsMpm = FaultSource::mpm, kIsUd = FaultSource::ud;
+
+TEST_CASE("what is said of simulated records is not said by a threshold that they set", "[findings]") {
+  Case of;
+  for (int i = 0; i < 100; ++i)  // every second one scores higher than all others
+    of.add(ExperimentKind::healthy, verdict(false, i % 2 == 0 ? i : 1000.0 + i));
+  of.add(ExperimentKind::mpm, verdict(false, 5000.0, 1, FaultSource::mpm));
+  const TrialFindings found = trial_findings(study(), 0, of.records, verdict(true, 1.0));
+  CHECK(found.threshold > 1090.0);  // of all of them
+  CHECK(found.threshold_for(0) > 1090.0);
+  CHECK(found.threshold_for(1) < 100.0);
+  check_rate(found.rates["false_alarm_healthy"], 50, 100);
+  check_rate(found.rates["detected"], 1, 1);
+}
 
 }  // namespace
 
