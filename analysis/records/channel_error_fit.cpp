@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include "analysis/methods/ours/base_noise.hpp"
+#include "analysis/records/coloured_noise.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/statistics/sample_spacing.hpp"
 #include "analysis/statistics/signal_check.hpp"
@@ -35,6 +37,24 @@ std::vector<Eigen::Index> samples_of(const Eigen::RowVectorXd& e, double& noise)
     throw InputError("record of a CV", "fewer than two samples", "two or more");
   noise = 0.5 * squares / pairs;
   return samples;
+}
+
+/// e and X less what the habit predicts of them, over the samples whose past is known: those before them
+/// follow each other as closely as any do, `closest` samples apart.
+void whiten(const NoiseHabit& habit, Eigen::Index closest, double least, ChannelErrorFit& fit) {
+  const Eigen::Index p = habit.autoregression.size();
+  std::vector<Eigen::Index> kept, samples;  // places in what is whitened, and in the loop
+  for (std::size_t i = static_cast<std::size_t>(p); i < fit.samples.size(); ++i)
+    if (fit.samples[i] - fit.samples[i - static_cast<std::size_t>(p)] == p * closest) {
+      kept.push_back(static_cast<Eigen::Index>(i) - p);
+      samples.push_back(fit.samples[i]);
+    }
+  if (std::ssize(kept) < 2)
+    return;
+  fit.e = Eigen::VectorXd(whitened_by(habit.autoregression, fit.e)(kept, 0));
+  fit.X = Eigen::MatrixXd(whitened_by(habit.autoregression, fit.X)(kept, Eigen::all));
+  fit.samples = std::move(samples);
+  fit.noise = habit.variance + least;
 }
 
 }  // namespace
@@ -83,8 +103,8 @@ PartialErrorFit fit_of(const ChannelErrorSums& sums, double noise) {
   return fit;
 }
 
-ChannelErrorFits::ChannelErrorFits(const Study& study, double delta)
-    : study_(study), settling_(slowest_settling(study)) {
+ChannelErrorFits::ChannelErrorFits(const Study& study, double delta, std::shared_ptr<const ModelHabit> habit)
+    : study_(study), settling_(slowest_settling(study)), habit_(std::move(habit)) {
   const Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(study.plant.G.cols(), 1);
   const Eigen::RowVectorXd nothing = Eigen::RowVectorXd::Constant(1, kNaN);
   for (Eigen::Index cv = 0; delta > 0.0 && cv < study.cv_count(); ++cv) {
@@ -93,16 +113,19 @@ ChannelErrorFits::ChannelErrorFits(const Study& study, double delta)
   }
 }
 
-ChannelErrorFit ChannelErrorFits::of(const AssessedLoop& loop, Eigen::Index cv) const {
+ChannelErrorFit ChannelErrorFits::of(const AssessedLoop& as_judged, Eigen::Index cv) const {
   ChannelErrorFit fit;
+  const std::shared_ptr<const AssessedLoop> corrected =
+      habit_ && habit_->correction ? habit_->correction->corrected(as_judged) : nullptr;
+  const AssessedLoop& loop = corrected ? *corrected : as_judged;
   const Eigen::RowVectorXd all = loop.y.row(cv) - loop.y_sim.row(cv);
   fit.samples = samples_of(all, fit.noise);
-  const std::vector<Eigen::Index>& samples = fit.samples;
-  fit.noise += variance_floor(loop.y_sim.row(cv).transpose());
+  const std::vector<Eigen::Index> samples = fit.samples;
+  const double least = variance_floor(loop.y_sim.row(cv).transpose());
+  fit.noise += least;
   fit.e = all(samples).transpose();
   const Eigen::VectorXd& e = fit.e;
-  const auto n = static_cast<double>(e.size());
-  fit.left = e.squaredNorm() / n;
+  fit.left = e.squaredNorm() / static_cast<double>(e.size());
   if (errors_.empty())
     return fit;
   fit.errors = priors_[static_cast<std::size_t>(cv)].channels;
@@ -113,15 +136,21 @@ ChannelErrorFit ChannelErrorFits::of(const AssessedLoop& loop, Eigen::Index cv) 
               .transpose();
   const Eigen::MatrixXd U = untold_columns(study_, cv, starts_after_unknown(loop.y, settling_),
                                            loop.samples())(samples, Eigen::all);
-  if (e.size() > U.cols())
-    fit.X -= U * U.completeOrthogonalDecomposition().solve(fit.X);
+  if (e.size() > U.cols()) {
+    const auto of_untold = U.completeOrthogonalDecomposition();
+    fit.X -= U * of_untold.solve(fit.X);
+    if (corrected)
+      fit.e -= U * of_untold.solve(fit.e);
+  }
+  if (habit_ && habit_->noise[static_cast<std::size_t>(cv)])
+    whiten(*habit_->noise[static_cast<std::size_t>(cv)], sample_spacing(all.transpose()), least, fit);
   // The noise of errors that no channel explains is larger than that of their differences.
   double noise = fit.noise;
   for (int pass = 0; pass < 2; ++pass) {
     Eigen::MatrixXd A = fit.X.transpose() * fit.X / noise;
     A.diagonal().array() += 1.0;
     fit.a = A.ldlt().solve(fit.X.transpose() * e / noise);
-    fit.left = (e - fit.X * fit.a).squaredNorm() / n;
+    fit.left = (e - fit.X * fit.a).squaredNorm() / static_cast<double>(e.size());
     noise = std::max(fit.noise, fit.left);
   }
   return fit;

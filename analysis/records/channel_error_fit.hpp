@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -51,10 +53,33 @@ struct PartialErrorFit {
 
 PartialErrorFit fit_of(const ChannelErrorSums& sums, double noise);
 
+/// The errors e of a CV in a period in which nothing is wrong, or nothing new:
+///
+///   e = X a + n,   n(k) = sum_l a_l n(k - l) + w(k),   w ~ N(0, variance)
+///
+/// with X a as ChannelErrorFit has it, and n an autoregression of order 3
+/// (analysis/records/coloured_noise.hpp).
+struct NoiseHabit {
+  Eigen::VectorXd autoregression;
+  double variance = 0.0;       ///< of w
+  double differences = 0.0;    ///< ChannelErrorFit::noise of the period
+  double channel_score = 0.0;  ///< max |a| / 2: above a threshold of scores a channel is wrong there
+};
+
+/// The same of all CVs.
+struct ModelHabit {
+  Eigen::Index first = 0, end = 0;               ///< samples of the period in its record
+  std::vector<std::optional<NoiseHabit>> noise;  ///< of each CV; none where the period has too few samples
+  /// What the period shows of the errors of the channels; null: they are not looked at, or nothing is shown.
+  std::shared_ptr<const ModelCorrection> correction = nullptr;
+};
+
 /// Fits of the CVs of a study whose channels may be off by the relative size `delta`; 0: p = 0.
 class ChannelErrorFits {
  public:
-  ChannelErrorFits(const Study& study, double delta);
+  /// With a habit the errors are those beside it: y_sim has its correction, e and X are whitened by its
+  /// autoregression, and `noise` is its variance; null: the record itself says what is noise.
+  ChannelErrorFits(const Study& study, double delta, std::shared_ptr<const ModelHabit> habit = nullptr);
 
   /// Of a CV of a loop or a window. Throws InputError for fewer than two samples.
   ChannelErrorFit of(const AssessedLoop& loop, Eigen::Index cv) const;
@@ -64,6 +89,7 @@ class ChannelErrorFits {
   Eigen::Index settling_;
   std::vector<ModelErrorPrior> priors_;
   std::vector<ModelErrors> errors_;  ///< of each CV, before anything is seen; none: the model is exact
+  std::shared_ptr<const ModelHabit> habit_;
 };
 
 }  // namespace mpm

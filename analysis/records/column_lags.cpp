@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/records/channel_error_fit.hpp"
 #include "base/non_finite.hpp"
@@ -72,12 +74,40 @@ bool is_one_channel(const RecordFrame& frame, const PlantRecord& record, const E
   return false;
 }
 
+/// CVs that are better explained with the same shift, each by a tenth and more and by no other shift as well:
+/// one clock. Empty: fewer than two.
+struct SharedShift {
+  std::vector<Eigen::Index> cvs;
+  Eigen::Index shift = 0;
+};
+
+/// `gains`: of each CV (rows) from its own shift by -kMostShift to kMostShift (columns).
+SharedShift shared_shift(const Eigen::MatrixXd& gains) {
+  SharedShift best;
+  for (Eigen::Index column = 0; column < gains.cols(); ++column) {
+    SharedShift here{.cvs = {}, .shift = column - kMostShift};
+    for (Eigen::Index cv = 0; cv < gains.rows(); ++cv)
+      if (gains(cv, column) >= kWorthNaming && gains(cv, column) == gains.row(cv).maxCoeff())
+        here.cvs.push_back(cv);
+    if (here.cvs.size() > best.cvs.size())
+      best = std::move(here);
+  }
+  return best.cvs.size() < 2 ? SharedShift{} : best;
+}
+
+/// "1 sample too late"
+std::string shift_text(Eigen::Index shift) {
+  return fmt::format("{} sample{} too {}", std::abs(shift), std::abs(shift) == 1 ? "" : "s",
+                     shift < 0 ? "late" : "early");
+}
+
 }  // namespace
 
 std::vector<std::string> column_lags(const RecordFrame& frame, const PlantRecord& record) {
   const Study& study = frame.as_kept;
   const Eigen::VectorXd as_recorded = log_errors(frame, record);
   Shifted best, second;
+  Eigen::MatrixXd of_cvs = Eigen::MatrixXd::Zero(study.cv_count(), 2 * kMostShift + 1);
   const auto look = [&](const std::vector<PlantModel::Variable>& variables,
                         Eigen::MatrixXd PlantRecord::*signals, bool is_cv, Eigen::Index first) {
     for (std::size_t i = 0; i < variables.size(); ++i) {
@@ -91,6 +121,8 @@ std::vector<std::string> column_lags(const RecordFrame& frame, const PlantRecord
         const double changed = (gains.array() != 0.0).cast<double>().sum();
         // What is better for one CV and worse for another is one channel, or none.
         const double gain = gains.minCoeff() < -kWorthNaming || changed == 0.0 ? 0.0 : gains.sum() / changed;
+        if (is_cv)
+          of_cvs(own.place, shift + kMostShift) = gain;
         if (gain > own.gain) {
           own.gain = gain;
           own.total = gains.sum();
@@ -108,14 +140,22 @@ std::vector<std::string> column_lags(const RecordFrame& frame, const PlantRecord
   look(study.plant.cvs, &PlantRecord::y, true, 0);
   look(study.plant.mvs, &PlantRecord::u, false, 0);
   look(study.plant.mds, &PlantRecord::d, false, study.mv_count());
+  if (const SharedShift shared = shared_shift(of_cvs); !shared.cvs.empty()) {
+    std::vector<std::string> names;
+    for (const Eigen::Index cv : shared.cvs)
+      names.push_back(study.plant.cvs[static_cast<std::size_t>(cv)].name);
+    return {
+        fmt::format("the columns of {} seem to be {}, all by the same: they have one clock that is not that "
+                    "of the others; look at how the historian stamps them",
+                    fmt::join(names, ", "), shift_text(shared.shift))};
+  }
   if (best.gain < kWorthNaming || second.gain > 0.9 * best.gain ||
       is_one_channel(frame, record, as_recorded, best))
     return {};
   return {
-      fmt::format("the column of {} seems to be {} sample{} too {}: the model explains the record better "
+      fmt::format("the column of {} seems to be {}: the model explains the record better "
                   "when it is shifted (errors {:.0f} % smaller); look at how the historian stamps it{}",
-                  best.name, std::abs(best.shift), std::abs(best.shift) == 1 ? "" : "s",
-                  best.shift < 0 ? "late" : "early", 100.0 * (1.0 - std::exp(-0.5 * best.gain)),
+                  best.name, shift_text(best.shift), 100.0 * (1.0 - std::exp(-0.5 * best.gain)),
                   !best.is_cv && best.place >= study.mv_count() && best.shift < 0
                       ? fmt::format(", or whether the controller has it late as well (analyser_delay in "
                                     "[controller.md.{}])",

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/channel_health.hpp"
+#include "analysis/records/model_habit.hpp"
 #include "analysis/records/record_alternatives.hpp"
 #include "base/non_finite.hpp"
 
@@ -17,7 +19,11 @@ namespace {
 class ModelCheck final : public AssessmentMethod {
  public:
   ModelCheck(const AssessmentContext& context, double delta)
-      : study_(context.study), fits_(context.study, delta), settling_(slowest_settling(context.study)) {}
+      : study_(context.study),
+        fits_(context.study, delta),
+        habit_(record_habit(context, delta)),
+        beside_habit_(context.study, delta, habit_),
+        settling_(slowest_settling(context.study)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     Assessment assessment;
@@ -26,13 +32,14 @@ class ModelCheck final : public AssessmentMethod {
     const std::vector<Eigen::Index> begins = health_periods(loop.samples(), settling_);
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const ChannelErrorFit fit = fits_.of(loop, cv);
-      const double score = error_score(fit.a, fit.left, fit.noise);
+      const ChannelErrorFit beside = habit_ ? beside_habit_.of(loop, cv) : fit;
+      const double score = score_of(beside, loop.first);
       assessment.cvs.push_back({score > kFarTooLarge, score});
       assessment.score = std::max(assessment.score, score);
       assessment.numbers.push_back({"noise", fit.noise, cv});
       if (const double F = input_dependence(study_, loop, fit, cv); F > dependence)
         dependence = F;
-      for (const ChannelHistory& history : channel_histories(fit, cv, begins, loop.samples(), kInfinity))
+      for (const ChannelHistory& history : channel_histories(beside, cv, begins, loop.samples(), kInfinity))
         for (const ChannelPeriod& period : history.periods)
           health = std::max(health, period.score);
     }
@@ -43,8 +50,27 @@ class ModelCheck final : public AssessmentMethod {
   }
 
  private:
+  /// Of all samples, or with a habit of those outside of its period: it says nothing new of itself. `first`:
+  /// of the window in the record.
+  double score_of(const ChannelErrorFit& fit, Eigen::Index first) const {
+    if (habit_ == nullptr)
+      return error_score(fit.a, fit.left, fit.noise);
+    ChannelErrorSums outside = sums_between(fit, 0, fit.samples.back() + 1);
+    const ChannelErrorSums inside = sums_between(fit, habit_->first - first, habit_->end - first);
+    if (inside.n < outside.n)
+      outside -= inside;
+    const PartialErrorFit part = fit_of(outside, fit.noise);
+    // Beside a habit a record tells little of some errors. With a ~ N(0, I) before, and C after it, its means
+    // have the variances 1 - C where nothing is wrong.
+    const Eigen::Index p = part.a.size();
+    const Eigen::ArrayXd told = (1.0 - part.covariance.diagonal().head(p).array()).max(1e-12);
+    return error_score((part.a.array() / told.sqrt()).matrix(), part.left, fit.noise);
+  }
+
   const Study& study_;
   ChannelErrorFits fits_;
+  std::shared_ptr<const ModelHabit> habit_;
+  ChannelErrorFits beside_habit_;
   Eigen::Index settling_;
 };
 
@@ -58,7 +84,14 @@ double variance_of_known(const Eigen::RowVectorXd& y) {
 
 }  // namespace
 
-std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoop& loop, double delta) {
+std::shared_ptr<const ModelHabit> record_habit(const AssessmentContext& context, double delta) {
+  const bool is_period = context.benchmark && context.benchmark->whole != nullptr;
+  return is_period && delta > 0.0 ? habit_of(context.study, delta, *context.benchmark, context.correction)
+                                  : nullptr;
+}
+
+std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoop& loop, double delta,
+                                           const ModelHabit* habit) {
   constexpr double kMostLeft = 0.5;
   const ChannelErrorFits fits(study, delta);
   std::vector<UnexplainedCv> found;
@@ -66,7 +99,10 @@ std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoo
     if ((!(loop.y.row(cv) - loop.y_sim.row(cv)).array().isNaN()).count() < 2)
       continue;  // nothing is known of its noise
     const ChannelErrorFit fit = fits.of(loop, cv);
-    const double noise = std::sqrt(fit.noise) / study.simulation.noise_standard_deviation(cv);
+    double usual = study.simulation.noise_standard_deviation(cv);
+    if (habit != nullptr && habit->noise[static_cast<std::size_t>(cv)])
+      usual = std::max(usual, std::sqrt(habit->noise[static_cast<std::size_t>(cv)]->differences));
+    const double noise = std::sqrt(fit.noise) / usual;
     if (std::isfinite(noise) && noise > kMostNoise &&
         fit.left > kMostLeft * variance_of_known(loop.y.row(cv)))
       found.push_back({cv, noise});

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "analysis/methods/assessment_method.hpp"
+#include "analysis/records/channel_error_fit.hpp"
 
 namespace mpm {
 
@@ -25,9 +27,15 @@ inline constexpr double kFarTooLarge = 1.5;
 ///   score_i = max(max |a| / 2, sqrt(left / v_i))
 ///
 /// So both a channel that is further off and errors that no channel explains raise the score; without either
-/// it is about 1. The controller plays no part in it. A method that only `assess` has: it knows `delta`, and
-/// its threshold is that of the simulated records. With delta = 0 the model is exact.
+/// it is about 1. With a benchmark period of the record, errors that were there already are the plant's
+/// habit: a, left and v_i are those beside it (ModelHabit), over the samples outside of the period. The
+/// controller plays no part in it. A method that only `assess` has: it knows `delta`, and its threshold is
+/// that of the simulated records. With delta = 0 the model is exact.
 AssessmentMethodInfo model_check_method(double delta);
+
+/// The habit that the benchmark of this context shows if it is a period of a record; null: it is a nominal
+/// loop, or the model is exact (`delta` = 0).
+std::shared_ptr<const ModelHabit> record_habit(const AssessmentContext& context, double delta);
 
 /// A CV whose noise is another than that of its study.
 struct UnexplainedCv {
@@ -39,7 +47,9 @@ inline constexpr double kMostNoise = 10.0;  ///< of a CV, in standard deviations
 
 /// The CVs that the model does not explain, whatever its errors: it leaves more than half of what they do,
 /// and their noise has more than ten times the standard deviation that the study states. `score` above cannot
-/// say so, since it is relative to the noise of the record.
-std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoop& loop, double delta);
+/// say so, since it is relative to the noise of the record. A noise that the habit has (null: there is none)
+/// counts as stated.
+std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoop& loop, double delta,
+                                           const ModelHabit* habit = nullptr);
 
 }  // namespace mpm

@@ -12,6 +12,7 @@
 
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "analysis/records/channel_error_fit.hpp"
+#include "analysis/records/coloured_noise.hpp"
 #include "base/non_finite.hpp"
 #include "plants/linear/zero_order_hold.hpp"
 #include "scenarios/faults/fault.hpp"
@@ -63,7 +64,6 @@ class CvErrors {
   }
 
  private:
-  static constexpr Eigen::Index kOrder = 3;
   static constexpr int kPasses = 3;
 
   Eigen::VectorXd told(const Eigen::VectorXd& signal) const {
@@ -77,31 +77,12 @@ class CvErrors {
     return H;
   }
 
-  /// The signals after an autoregression.
-  static Columns whitened_by(const Eigen::VectorXd& a, const Columns& signals) {
-    const Eigen::Index p = a.size(), n = signals.rows() - p;
-    Columns white = signals.bottomRows(n);
-    for (Eigen::Index lag = 0; lag < p; ++lag)
-      white -= a(lag) * signals.middleRows(p - 1 - lag, n);
-    return white;
-  }
-
-  static Eigen::VectorXd autoregression_of(const Eigen::VectorXd& r) {
-    const Eigen::Index n = r.size() - kOrder;
-    Columns past(n, kOrder);
-    for (Eigen::Index lag = 0; lag < kOrder; ++lag)
-      past.col(lag) = r.segment(kOrder - 1 - lag, n);
-    Columns A = past.transpose() * past;
-    A.diagonal().array() += 1e-12 * A.trace() + 1e-300;
-    return A.ldlt().solve(past.transpose() * r.tail(n));
-  }
-
   double log_likelihood(const Eigen::VectorXd& e, const Columns& free,
                         Eigen::VectorXd* innovations = nullptr) const {
     const auto n = static_cast<double>(e.size());
     Columns Z(e.size(), X_.cols() + free.cols());
     Z << X_, free;
-    Eigen::VectorXd a = Eigen::VectorXd::Zero(kOrder);
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(kNoiseOrder);
     Eigen::VectorXd of_errors;
     double variance = std::max(1e-300, e.squaredNorm() / n), squares = 0.0;
     for (int pass = 0; pass < kPasses; ++pass) {

@@ -25,7 +25,7 @@ namespace mpm {
 /// | disturbance | none                                                                                     |
 /// | mismatch    | of one channel of each CV: another gain, time constant or dead time, from the onset on   |
 /// | data        | y is s samples late against the inputs, in one CV or in all: y_sim(k) - y_sim(k - s)     |
-/// | sensor      | a ramp in y of one CV from some sample on                                                |
+/// | sensor      | a ramp in y of one CV from some sample on: of its sensor, or of a disturbance on it      |
 /// | valve       | of one MV: the responses to x - u, x of a StickyValve, or of a FrictionValve without     |
 /// |             | kinetic friction                                                                         |
 struct RecordAlternatives {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string_view>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,7 +17,9 @@
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/cost_of_record.hpp"
+#include "analysis/records/held_columns.hpp"
 #include "analysis/records/model_check.hpp"
+#include "analysis/records/model_habit.hpp"
 #include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
 #include "analysis/records/untold_part.hpp"
@@ -63,6 +68,14 @@ AssessedLoop since_onset(const RecordAssessment& assessment) {
   return loop;
 }
 
+/// The samples at which some CV is judged: no others count in what a repair would bring.
+std::vector<bool> counted_samples(const AssessedLoop& loop) {
+  std::vector<bool> counted(static_cast<std::size_t>(loop.samples()));
+  for (std::size_t k = 0; k < counted.size(); ++k)
+    counted[k] = !loop.y.col(static_cast<Eigen::Index>(k)).array().isNaN().all();
+  return counted;
+}
+
 /// The channel that the verdict would repair: that of the mismatch that the first method names, or else
 /// `likelihood`, or else the first one that they name at the dearest CV.
 std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const AssessedLoop& loop,
@@ -106,18 +119,19 @@ void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictE
   const Study& study = assessment.study;
   const OperatingPoint& point = frame.basis.point;
   const AssessedLoop loop = since_onset(assessment);
+  const std::vector<bool> counted = counted_samples(loop);
   try {
     std::optional<RepairedChannel> named;
     if (const auto repair = repair_of(assessment, loop, point)) {
       evidence.mismatch = mismatch_of(*repair);
-      assessment.repair = promised_repair(study, point, loop, *repair, frame.factory);
+      assessment.repair = promised_repair(study, point, loop, *repair, frame.factory, counted);
       assessment.information =
           channel_information(study, loop, repair->channel,
                               frame.model_error > 0.0 ? frame.model_error : study.assessment.model_error);
       evidence.tells_apart = assessment.information->rank == assessment.information->parameters;
       named = repair->repaired();
     }
-    if (auto prospects = RepairProspects(study, point, frame.factory).of(loop, named))
+    if (auto prospects = RepairProspects(study, point, frame.factory).of(loop, named, counted))
       assessment.prospects = ranked(std::move(*prospects));
   } catch (const InputError& error) {
     assessment.no_repair = error.what();
@@ -186,6 +200,7 @@ void add_trial(RecordAssessment& assessment, const Study& study,
     alike->as_kept.monitoring.reset();
     alike->closed.monitoring.reset();
     alike->late = 0.0;
+    alike->habit.reset();
     const TrialLoops loops = run_trials({made->study, [alike, made](const std::vector<std::string>& methods) {
                                            const auto asked = std::make_shared<RecordFrame>(*alike);
                                            asked->methods = methods;
@@ -203,8 +218,8 @@ void add_trial(RecordAssessment& assessment, const Study& study,
     trial.cost_since = number_thresholds(loops.records, last, kCostSinceNumber, ny);
     trial.fit = fit_threshold(loops.records, last);
     trial.health = number_thresholds(loops.records, last, "health", 1)(0);
-    trial.counts_of = [records = loops.records, keeps = loops.keeps, last, threshold = trial.model.threshold](
-                          RecordSource named) { return trial_counts(records, last, threshold, 0, named); };
+    trial.counts_of = [records = loops.records, keeps = loops.keeps, last, model = trial.model](
+                          RecordSource named) { return trial_counts(records, last, model, 0, named); };
     assessment.trial = std::move(trial);
   } catch (const InputError& error) {
     assessment.no_trial = fmt::format("no loop like this one can be simulated: {}", error.what());
@@ -258,7 +273,7 @@ std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study&
     }
   frame->factory = factory;
   frame->model_error = options.model_error;
-  frame->finds_benchmark = study.data.benchmark.size() == 1;
+  frame->finds_benchmark = study.data.benchmark == std::vector<std::string>{"found"};
   assessment.study = frame->study_of(options.methods.front());
   frame->basis = basis_of(assessment.study, frame->factory);
   frame->settling = slowest_settling(study);
@@ -297,16 +312,16 @@ std::optional<FaultOnset> onset_of(const RecordFrame& frame, const RecordAssessm
   if (!assessment.model.answered() || !(assessment.model.score > threshold) ||
       assessment.model.predicted_cv < 0)
     return std::nullopt;
-  return fault_onset(
-      ChannelErrorFits(frame.as_kept, frame.model_error).of(assessment.loop, assessment.model.predicted_cv),
-      threshold);
+  return fault_onset(ChannelErrorFits(frame.as_kept, frame.model_error, frame.habit)
+                         .of(assessment.loop, assessment.model.predicted_cv),
+                     threshold);
 }
 
 /// The channels in periods of the record, and the error of a gain that the record as a whole would show.
 double add_health(const RecordFrame& frame, RecordAssessment& assessment) {
   if (!assessment.model.answered() || frame.model_error == 0.0)
     return 0.0;
-  const ChannelErrorFits fits(frame.as_kept, frame.model_error);
+  const ChannelErrorFits fits(frame.as_kept, frame.model_error, frame.habit);
   const Eigen::Index samples = assessment.loop.samples();
   assessment.periods = health_periods(samples, frame.settling);
   double visible = kInfinity;
@@ -319,6 +334,32 @@ double add_health(const RecordFrame& frame, RecordAssessment& assessment) {
       visible = std::min(visible, whole.periods.front().visible);
   }
   return visible;
+}
+
+/// The benchmark in use, or else the period in which the model is best, with what its channels look like
+/// there.
+RecordBenchmark best_benchmark(const RecordFrame& frame, const RecordAssessment& assessment) {
+  const auto [first, end] = assessment.record.benchmark;
+  RecordBenchmark benchmark{.use = first == end            ? BenchmarkUse::none
+                                   : frame.finds_benchmark ? BenchmarkUse::found
+                                                           : BenchmarkUse::named,
+                            .first = first,
+                            .end = end,
+                            .is_wanted = assessment.data.benchmark != std::vector<std::string>{"none"}};
+  if (first < end || !benchmark.is_wanted)
+    return benchmark;
+  std::tie(benchmark.first, benchmark.end) = best_period(frame, assessment.loop);
+  if (benchmark.first == benchmark.end || frame.model_error == 0.0)
+    return benchmark;
+  const auto habit = habit_of(frame.as_kept, frame.model_error,
+                              window_of(assessment.loop, benchmark.first, benchmark.end - benchmark.first));
+  for (Eigen::Index cv = 0; cv < assessment.loop.y.rows(); ++cv)
+    if (const auto& noise = habit->noise[static_cast<std::size_t>(cv)];
+        noise && !(noise->channel_score <= benchmark.channel_score)) {
+      benchmark.channel_score = noise->channel_score;
+      benchmark.cv = cv;
+    }
+  return benchmark;
 }
 
 /// All that the verdict rests on but for source and repair.
@@ -339,6 +380,7 @@ VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessme
     for (CvCost& cost : evidence.costs)
       cost.threshold = (since ? assessment.trial->cost_since : assessment.trial->cost)(cost.cv);
   evidence.controller_is_alike = assessment.controller.is_alike();
+  evidence.benchmark = best_benchmark(frame, assessment);
   evidence.late = frame.late;
   evidence.late_is_corrected = frame.late != 0.0;
   if (assessment.trial)
@@ -349,14 +391,18 @@ VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessme
 /// What may be the matter with a record that the model does not explain.
 void add_sources(const RecordFrame& frame, RecordAssessment& assessment, VerdictEvidence& evidence) {
   assessment.odds = odds_of(frame, assessment);
-  evidence.weights = source_weights(assessment.odds, assessment.said.front());
+  AssessmentRecord first = assessment.said.front();
+  first.flagged = assessment.is_flagged(0);  // by simulated records, and not by a band of variances
+  evidence.weights = source_weights(assessment.odds, first);
   if (frame.model_error > 0.0) {
     RecordAlternatives alternatives =
         record_alternatives(frame.as_kept, assessment.loop, frame.model_error, evidence.onset);
     if (frame.late != 0.0)
       alternatives.data = -kInfinity;  // nothing is left of it
-    evidence.weights =
+    const SourceWeights weights =
         with_alternatives(evidence.weights, alternatives, assessment.trial ? assessment.trial->fit : kNaN);
+    evidence.weights = weights.of;
+    evidence.drift = weights.drift;
     evidence.valve_mv = alternatives.valve_mv;
     evidence.sensor_cv = alternatives.sensor_cv;
     if (frame.late == 0.0) {
@@ -386,7 +432,9 @@ std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Stu
   assessment.model = std::move(judged.said.back());
   judged.said.pop_back();
   assessment.said = std::move(judged.said);
-  assessment.unexplained = unexplained_cvs(frame->as_kept, assessment.loop, frame->model_error);
+  frame->habit = judged.habit;
+  assessment.unexplained =
+      unexplained_cvs(frame->as_kept, assessment.loop, frame->model_error, frame->habit.get());
   tell_benchmark(*frame, assessment);
   for (std::string& warning : column_lags(*frame, assessment.record))
     assessment.warnings.push_back(std::move(warning));
@@ -436,7 +484,7 @@ TrialRunner trials_in_memory(QpSolverFactory factory) {
 
 RecordAssessment assess_record(const Study& study, PlantRecord record, const AssessOptions& options,
                                const QpSolverFactory& factory, const TrialRunner& run_trials) {
-  Study checked = study;
+  Study checked = with_held_columns(study, record);
   const auto methods = std::make_shared<MethodTable>(method_table(study.assessment));
   methods->add(model_check_method(options.model_error));
   checked.assessment.table = methods;
@@ -450,9 +498,12 @@ RecordAssessment assess_record(const Study& study, PlantRecord record, const Ass
   assessment.verdict = record_verdict(evidence);
   if (assessment.verdict.model.answer == ModelAnswer::fails) {
     add_sources(*frame, assessment, evidence);
-    if (assessment.trial)
+    if (assessment.trial) {
+      const RecordVerdict::Model model = record_verdict(evidence).model;
+      // No simulated record drifts: how often that is right is not known.
       evidence.trials = assessment.trial->counts =
-          assessment.trial->counts_of(record_verdict(evidence).model.source);
+          assessment.trial->counts_of(model.drifts ? RecordSource::sensor : model.source);
+    }
     assessment.verdict = record_verdict(evidence);
     add_repair(assessment, *frame, evidence);
     assessment.verdict = record_verdict(evidence);

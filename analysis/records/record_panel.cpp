@@ -92,8 +92,7 @@ std::pair<Eigen::Index, Eigen::Index> benchmark_of(const RecordFrame& frame, con
                                                    const AssessedLoop& loop) {
   if (!frame.finds_benchmark)
     return record.benchmark;
-  const Eigen::Index fewest = window_scan(frame.as_kept).longest + kFewestCorrelatedPairs;
-  const auto found = quietest_period(loop, std::max(record.samples() / 4, fewest));
+  const auto found = best_period(frame, loop);
   if (found.first == found.second)
     throw InputError("data.benchmark", "\"found\", and no period with enough samples of a CV",
                      "two time stamps, or a longer record");
@@ -113,6 +112,11 @@ void add_costs(const RecordFrame& frame, const PlantRecord& record, AssessmentRe
 }
 
 }  // namespace
+
+std::pair<Eigen::Index, Eigen::Index> best_period(const RecordFrame& frame, const AssessedLoop& loop) {
+  const Eigen::Index fewest = window_scan(frame.as_kept).longest + kFewestCorrelatedPairs;
+  return quietest_period(loop.y - loop.y_sim, loop.u, std::max(loop.samples() / kBenchmarkShare, fewest));
+}
 
 const Study& RecordFrame::study_of(const std::string& method) const {
   return needs_every_sample(*this, method) ? closed : as_kept;
@@ -180,6 +184,8 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
       learn_model(of_benchmark != nullptr ? *context.benchmark
                                           : without_moves(*context.benchmark, frame_.basis.point),
                   context);
+      if (of_benchmark != nullptr && !closes)
+        judged.habit = record_habit(context, frame_.model_error);
       return std::make_unique<MethodPanel>(study, std::move(context), group.methods);
     };
     if (group.methods.empty())

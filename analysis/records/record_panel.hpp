@@ -11,6 +11,7 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
 #include "analysis/methods/method_panel.hpp"
+#include "analysis/records/channel_error_fit.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
 
@@ -37,6 +38,7 @@ struct RecordFrame {
   Eigen::MatrixXd y0 = {};       ///< ny x N, the nominal loop; empty: no cost is asked for
   double late = 0.0;             ///< samples by which all CVs of the record are late (common_lateness())
   Eigen::Index since = 0;        ///< sample from which on costs are asked for besides
+  std::shared_ptr<const ModelHabit> habit = {};  ///< JudgedRecord::habit of the record
 
   const Study& study_of(const std::string& method) const;
 };
@@ -45,8 +47,13 @@ struct RecordFrame {
 struct JudgedRecord {
   AssessedLoop loop;
   std::pair<Eigen::Index, Eigen::Index> benchmark{0, 0};  ///< as PlantRecord::benchmark; chosen or found
+  std::shared_ptr<const ModelHabit> habit = {};           ///< record_habit()
   std::vector<AssessmentRecord> said;
 };
+
+/// The period of a quarter of the record in which the model is best while its MVs move (quietest_period()),
+/// and not too short for the methods; equal numbers: there is none.
+std::pair<Eigen::Index, Eigen::Index> best_period(const RecordFrame& frame, const AssessedLoop& loop);
 
 /// The record as the methods see it. Samples in whose past inputs are unknown (before the record, and after
 /// unknown_samples()) are not judged until the slowest channel has settled. With a model error y_sim also

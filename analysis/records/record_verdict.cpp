@@ -67,13 +67,25 @@ OfSources probabilities_of(const VerdictEvidence& evidence, bool fails) {
   return probabilities;
 }
 
-/// The most probable one by the evidence, which the probabilities keep.
-RecordSource likeliest(const OfSources& weights) {
-  RecordSource best = RecordSource::unknown;
-  for (const RecordSource source : kFaults)
-    if (weights[source] > weights[best])
-      best = source;
-  return best;
+/// The most probable one by the evidence, which the probabilities keep. `drifts`: is it a drift by either of
+/// its causes?
+RecordSource likeliest(const VerdictEvidence& evidence, bool& drifts) {
+  const auto best_of = [](const OfSources& weights) {
+    RecordSource best = RecordSource::unknown;
+    for (const RecordSource source : kFaults)
+      if (weights[source] > weights[best])
+        best = source;
+    return best;
+  };
+  OfSources by_cause = evidence.weights;
+  by_cause[RecordSource::sensor] += evidence.drift;
+  by_cause[RecordSource::disturbance] -= evidence.drift;
+  drifts = evidence.drift > 0.0 && best_of(by_cause) == RecordSource::sensor;
+  if (drifts)
+    return evidence.weights[RecordSource::sensor] > evidence.weights[RecordSource::disturbance]
+               ? RecordSource::sensor
+               : RecordSource::disturbance;
+  return best_of(evidence.weights);
 }
 
 RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::vector<CvCost>& costs) {
@@ -96,12 +108,12 @@ RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::ve
   if (!fails)
     return model;
   model.since = evidence.onset;
-  model.source = likeliest(evidence.weights);
+  model.source = likeliest(evidence, model.drifts);
   if (model.has_mismatch())
     model.mismatch = evidence.mismatch;
   if (model.source == RecordSource::valve)
     model.valve_mv = evidence.valve_mv;
-  if (model.source == RecordSource::sensor)
+  if (model.source == RecordSource::sensor || model.drifts)
     model.sensor_cv = evidence.sensor_cv;
   if (model.source == RecordSource::data && !evidence.late_is_corrected) {
     model.late = evidence.late;
@@ -165,6 +177,8 @@ RecordVerdict::Action action_on(const VerdictEvidence& evidence, const RecordVer
   }
   if (model.at.front().is_noise)
     return {.kind = ActionKind::sensor, .cv = model.at.front().cv};
+  if (model.drifts)
+    return {.kind = ActionKind::sensor, .cv = model.sensor_cv < 0 ? model.at.front().cv : model.sensor_cv};
   switch (model.source) {
     case RecordSource::mismatch:
     case RecordSource::both:
@@ -195,6 +209,18 @@ std::optional<PromisedGain> in_agreement(std::optional<PromisedGain> promise) {
   return promise;
 }
 
+/// What becomes of the best period where none is in use.
+RecordBenchmark decided_benchmark(const VerdictEvidence& evidence, ModelAnswer answer) {
+  RecordBenchmark benchmark = evidence.benchmark;
+  if (benchmark.use == BenchmarkUse::named || benchmark.use == BenchmarkUse::found)
+    return benchmark;
+  const bool is_asked = answer == ModelAnswer::fails && benchmark.is_wanted;
+  const bool is_fit =
+      benchmark.first < benchmark.end && !(benchmark.channel_score > evidence.model_threshold);
+  benchmark.use = !is_asked ? BenchmarkUse::none : is_fit ? BenchmarkUse::proposed : BenchmarkUse::unfit;
+  return benchmark;
+}
+
 }  // namespace
 
 Eigen::Index RecordVerdict::named_cv() const {
@@ -218,8 +244,9 @@ const char* RecordVerdict::found() const {
 }
 
 RecordVerdict record_verdict(const VerdictEvidence& evidence) {
-  RecordVerdict verdict{.model = {}, .loop = loop_answer(evidence), .action = {}};
+  RecordVerdict verdict{.model = {}, .loop = loop_answer(evidence), .action = {}, .benchmark = {}};
   verdict.model = model_answer(evidence, verdict.loop.costs);
+  verdict.benchmark = decided_benchmark(evidence, verdict.model.answer);
   verdict.has_trials = evidence.trials.has_value();
   verdict.controller_is_alike = evidence.controller_is_alike;
   verdict.action = action_on(evidence, verdict);

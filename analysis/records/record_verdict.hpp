@@ -69,6 +69,28 @@ template <>
 inline constexpr auto kWords<ActionKind> = word_list("nothing", "repair", "sensor", "valve", "column",
                                                      "controller", "limit", "disturbance", "test", "wait");
 
+/// What counts as the plant's habit, and no fault.
+enum class BenchmarkUse : std::int8_t {
+  none,      ///< nothing, and nothing is proposed: the model does not fail, or nobody wants one
+  named,     ///< a period that the study names
+  found,     ///< the one in which the model is best, as the study wants it
+  proposed,  ///< nothing; but in one period the model is best, and no channel is wrong in it
+  unfit,     ///< nothing; in the best period a channel is wrong as well, or there is none
+};
+template <>
+inline constexpr auto kWords<BenchmarkUse> = word_list("none", "named", "found", "proposed", "unfit");
+
+/// The benchmark of a record. A period is proposed and never taken: what is wrong throughout the record would
+/// be the plant's habit.
+struct RecordBenchmark {
+  BenchmarkUse use = BenchmarkUse::none;
+  Eigen::Index first = 0, end = 0;  ///< samples of the period, in use or proposed; equal: there is none
+  /// Of the best period, NoiseHabit::channel_score of the CV in which it is largest.
+  double channel_score = kNaN;
+  Eigen::Index cv = -1;
+  bool is_wanted = true;  ///< data.benchmark is not "none"
+};
+
 /// A CV that the model does not explain: `score` is above `threshold`.
 struct UnexplainedPart {
   Eigen::Index cv;
@@ -121,6 +143,7 @@ struct VerdictEvidence {
   std::vector<CvCost> costs = {};  ///< since the onset where there is one
   /// Posterior of the sources, given that there is one; need not sum to 1.
   OfSources weights = {};
+  double drift = 0.0;                          ///< SourceWeights::drift, of `sensor_cv`
   std::optional<NamedMismatch> mismatch = {};  ///< what is wrong with the model
   Eigen::Index valve_mv = -1, sensor_cv = -1;
   Eigen::Index late_cv = -1;  ///< of data; -1: all CVs
@@ -130,6 +153,7 @@ struct VerdictEvidence {
   double worth = 0.1;       ///< gain from which on a channel is repaired that costs nothing (AdequacyOptions)
   bool tells_apart = true;  ///< the record tells the parameters of this channel apart
   bool controller_is_alike = true;
+  RecordBenchmark benchmark = {};  ///< in use, or the best period, whose use the verdict decides
 };
 
 /// The verdict. record_verdict() makes it, and nothing changes it.
@@ -139,9 +163,11 @@ struct RecordVerdict {
     std::vector<UnexplainedPart> at = {};   ///< dearer ones first, then by score
     double score = kNaN, threshold = kNaN;  ///< the largest of the CVs; NaN: there is none
     std::optional<FaultOnset> since = {};
-    RecordSource source = RecordSource::nothing;  ///< the most probable one of a model that fails
+    /// The most probable one of a model that fails; of a CV that drifts the more probable one of its two.
+    RecordSource source = RecordSource::nothing;
+    bool drifts = false;  ///< `sensor_cv` does, by its sensor or by a disturbance: the record cannot tell
     std::optional<NamedMismatch> mismatch = {};   ///< of a source with a mismatch
-    Eigen::Index valve_mv = -1, sensor_cv = -1;   ///< of these sources
+    Eigen::Index valve_mv = -1, sensor_cv = -1;   ///< of these sources, and of a drift
     Eigen::Index late_cv = -1;                    ///< of data, or where it is corrected; -1: all CVs
     double late = 0.0;                            ///< samples, below 0: early; 0: none is
     bool late_is_corrected = false;               ///< the model was held against the record with it
@@ -164,6 +190,7 @@ struct RecordVerdict {
   Model model;
   Loop loop;
   Action action;
+  RecordBenchmark benchmark;
   bool has_trials = false;
   bool controller_is_alike = true;
 
@@ -187,6 +214,9 @@ struct RecordVerdict {
 ///
 ///     P(s) = (1 - P(nothing)) (c q(s) + (1 - c) / 7)
 ///
+/// - A CV drifts where both causes of a drift together are the most probable source.
+/// - Of a model that fails without a benchmark the best period is proposed as one, unless the score of a
+///   channel in it is above the threshold.
 /// - The action follows from both answers and the source.
 RecordVerdict record_verdict(const VerdictEvidence& evidence);
 

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/findings/trial_findings.hpp"
 #include "analysis/records/model_check.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/faults/fault.hpp"
@@ -71,14 +70,16 @@ Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method
   return thresholds;
 }
 
-TrialCounts trial_counts(const RecordRange& records, std::size_t method, double threshold,
+TrialCounts trial_counts(const RecordRange& records, std::size_t method, const TrialFindings& found,
                          std::size_t source_method, RecordSource named) {
   TrialCounts counts;
+  std::size_t place = 0;  // among those without a fault
   records.each([&](const ExperimentRecord& record) {
     if (!has_verdict(record, method))
       return;
-    const bool is_above = record.assessments[method].score > threshold;
     const std::int64_t healthy = is_without_fault(record) ? 1 : 0;
+    const double threshold = healthy == 1 ? found.threshold_for(place++) : found.threshold;
+    const bool is_above = record.assessments[method].score > threshold;
     ++(is_above ? counts.above : counts.below);
     (is_above ? counts.healthy_above : counts.healthy_below) += healthy;
     if (!is_above || !has_verdict(record, source_method))
@@ -134,15 +135,16 @@ double fit_threshold(const RecordRange& records, std::size_t method) {
   return trial_threshold(fits);
 }
 
-OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
-                            double most_fit) {
+SourceWeights with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
+                                double most_fit) {
   constexpr double kPrior = 0.1, kMostly = 0.8;
   const double usual = std::max(alternatives.mismatch, alternatives.disturbance);
-  OfSources all;
+  SourceWeights found;
+  OfSources& all = found.of;
   const double most = std::max({usual, alternatives.valve, alternatives.sensor, alternatives.data});
   const auto share = [most](double likelihood) { return std::exp(likelihood - most); };
   all[RecordSource::valve] = kPrior * share(alternatives.valve);
-  all[RecordSource::sensor] = kPrior * share(alternatives.sensor);
+  all[RecordSource::sensor] = 2.0 * kPrior * share(alternatives.sensor);  // its two causes, until below
   all[RecordSource::data] = kPrior * share(alternatives.data);
   OfSources told = weights;
   double sum = 0.0;
@@ -163,7 +165,10 @@ OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& 
     all[RecordSource::unknown] += kMostly * all.each[best];
     all.each[best] *= 1.0 - kMostly;
   }
-  return all;
+  found.drift = 0.5 * all[RecordSource::sensor];
+  all[RecordSource::sensor] = found.drift;
+  all[RecordSource::disturbance] += found.drift;
+  return found;
 }
 
 }  // namespace mpm

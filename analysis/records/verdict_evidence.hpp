@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "analysis/experiment/record_range.hpp"
+#include "analysis/findings/trial_findings.hpp"
 #include "analysis/methods/assessment_record.hpp"
 #include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_verdict.hpp"
@@ -20,9 +21,10 @@ namespace mpm {
 Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method, const std::string& number,
                                   Eigen::Index rows);
 
-/// Simulated records by the side of `threshold` on which their answer in the place `method` is, and how often
-/// the answer in the place `source_method` has the right source where it says what is `named`.
-TrialCounts trial_counts(const RecordRange& records, std::size_t method, double threshold,
+/// Simulated records by the side of their threshold (TrialFindings::threshold_for()) on which their answer in
+/// the place `method`, of which `found` is, lies, and how often the answer in the place `source_method` has
+/// the right source where it says what is `named`.
+TrialCounts trial_counts(const RecordRange& records, std::size_t method, const TrialFindings& found,
                          std::size_t source_method, RecordSource named);
 
 /// The posterior of `likelihood` on the record. Where the method of the verdict flags the record and sees
@@ -31,12 +33,20 @@ TrialCounts trial_counts(const RecordRange& records, std::size_t method, double 
 /// both are as probable.
 OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRecord& said);
 
-/// The weights where further hypotheses count: valve, sensor and data by their likelihood against the better
-/// one of mismatch and disturbance, a tenth as probable before; mismatch, disturbance and both share the rest
-/// as they did. Where the most probable one leaves more than `most_fit` of RecordAlternatives::fit, most of
-/// its weight goes to none of these.
-OfSources with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
-                            double most_fit);
+/// Weights of the sources, and what they have of a CV that drifts.
+struct SourceWeights {
+  OfSources of = {};
+  /// Part of the weights of sensor and of disturbance each: in a closed loop a sensor that drifts and a
+  /// disturbance on its CV that grows as fast look the same.
+  double drift = 0.0;
+};
+
+/// The weights where further hypotheses count: valve, drift and data by their likelihood against the better
+/// one of mismatch and disturbance, a tenth as probable before, a drift by either of its causes; mismatch,
+/// disturbance and both share the rest as they did. Where the most probable one leaves more than `most_fit`
+/// of RecordAlternatives::fit, most of its weight goes to none of these.
+SourceWeights with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
+                                double most_fit);
 
 /// The threshold of kFitNumber: as number_thresholds(), of simulated records without a mismatch.
 double fit_threshold(const RecordRange& records, std::size_t method);

@@ -104,7 +104,7 @@ OptionKeys data_keys(Study& study) {
   };
   const auto read_benchmark = [&o](const TomlTable& data, const std::string& key) {
     if (data.find(key)->is_string())
-      o.benchmark = {std::vector<std::string>{"found"}[read_one_of(data, key, {"found"})]};
+      o.benchmark = {std::vector<std::string>{"found", "none"}[read_one_of(data, key, {"found", "none"})]};
     else
       o.benchmark = read_period(data, key);
   };
@@ -245,7 +245,7 @@ OptionKeys data_keys(Study& study) {
       key::option("benchmark", "list of 2 texts, or text",
                   "period in which the controller worked as designed, for the methods that need one")
           .otherwise("the simulated nominal loop")
-          .allow("stamps as in the file, or `\"found\"`")
+          .allow("stamps as in the file, `\"found\"`, or `\"none\"`, so that `assess` proposes none")
           .read(read_benchmark)};
 }
 

@@ -128,6 +128,7 @@ Section verdict_section(const RecordAssessment& of, const AssessmentText& text) 
   box.add("Model", as_label(text.verdict.model));
   box.add("Loop", as_label(text.verdict.loop));
   box.add("Action", as_label(text.verdict.action));
+  box.add("Benchmark", as_label(text.verdict.benchmark));
   section.add(std::move(box));
   section.add(worst_figure(of));
   return section;

@@ -198,6 +198,7 @@ Json model_json(const RecordAssessment& of) {
                                        {"latest", stamp(model.since->latest)}}
                                 : Json()},
           {"source", to_string(model.source)},
+          {"drift", model.drifts && model.sensor_cv >= 0 ? Json(cv_name(of.study, model.sensor_cv)) : Json()},
           {"mismatch", model.mismatch ? named_json(of.study, *model.mismatch) : Json()},
           {"valve", model.valve_mv < 0 ? Json() : Json(mv_name(of.study, model.valve_mv))},
           {"late", model.late == 0.0
@@ -249,6 +250,12 @@ std::string assessment_json(const RecordAssessment& assessment) {
                           ? Json()
                           : Json{{"from", assessment.record.stamps[static_cast<std::size_t>(first)]},
                                  {"to", assessment.record.stamps[static_cast<std::size_t>(end - 1)]}};
+  const RecordBenchmark& best = assessment.verdict.benchmark;
+  json["proposed_benchmark"] =
+      best.use == BenchmarkUse::proposed
+          ? Json{{"from", assessment.record.stamps[static_cast<std::size_t>(best.first)]},
+                 {"to", assessment.record.stamps[static_cast<std::size_t>(best.end - 1)]}}
+          : Json();
   json["warnings"] = assessment.warnings;
   return json_text(json);
 }

@@ -72,7 +72,7 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
   const MethodRates& rates = of.trial->model.rates;
   sentences.push_back(
       fmt::format("Of {} simulated records like this one, with {}, the model was said to fail in {} of those "
-                  "without a fault and in "
+                  "without a fault, each half of them against the threshold of the other half, and in "
                   "{} of those with one ({} where it had an impact).",
                   of.trial->loops, worlds_text(of), share_text(rates["false_alarm_healthy"]),
                   share_text(rates["detected"]), share_text(rates["detected_impact"])));
@@ -193,7 +193,7 @@ AssessmentText assessment_text(const RecordAssessment& of) {
 
 std::vector<std::string> verdict_sentences(const RecordAssessment& assessment) {
   const AssessmentText text = assessment_text(assessment);
-  Texts sentences{text.verdict.model, text.verdict.loop, text.verdict.action};
+  Texts sentences{text.verdict.model, text.verdict.loop, text.verdict.action, text.verdict.benchmark};
   for (const Texts* const more : {&text.further, &text.trust})
     sentences.insert(sentences.end(), more->begin(), more->end());
   return sentences;
@@ -202,9 +202,9 @@ std::vector<std::string> verdict_sentences(const RecordAssessment& assessment) {
 std::string brief_text(const RecordAssessment& of) {
   const AssessmentText text = assessment_text(of);
   std::string lines =
-      fmt::format("{}: {}, {} to {}\n\nModel:  {}\nLoop:   {}\nAction: {}\n", of.study.plant.title, of.file,
-                  of.record.stamps.front(), of.record.stamps.back(), text.verdict.model, text.verdict.loop,
-                  text.verdict.action);
+      fmt::format("{}: {}, {} to {}\n\nModel:  {}\nLoop:   {}\nAction: {}\nBasis:  {}\n",
+                  of.study.plant.title, of.file, of.record.stamps.front(), of.record.stamps.back(),
+                  text.verdict.model, text.verdict.loop, text.verdict.action, text.verdict.benchmark);
   if (!text.verdict.probabilities.empty())
     lines += "\n" + text.verdict.probabilities + "\n";
   if (!of.warnings.empty())

@@ -10,6 +10,7 @@
 
 #include "results/assess/repair_form.hpp"
 #include "results/text/experiment_text.hpp"
+#include "scenarios/toml/toml_literal.hpp"
 
 namespace mpm {
 namespace {
@@ -47,6 +48,7 @@ class VerdictWriter {
     return {.model = model(),
             .loop = loop(),
             .action = action(),
+            .benchmark = benchmark(),
             .scores = scores(),
             .costs = costs(),
             .probabilities = probabilities()};
@@ -78,6 +80,11 @@ class VerdictWriter {
     const std::string at = cv(model.at.front().cv);
     std::string mismatch = model.mismatch ? mismatch_sentence(study_, *model.mismatch)
                                           : fmt::format("a channel of {} is not that of the model", at);
+    if (model.drifts)
+      return fmt::format(
+          "{} drifts away from the model, by its sensor or by an unmeasured disturbance that grows: the loop "
+          "cannot tell which",
+          model.sensor_cv < 0 ? at : cv(model.sensor_cv));
     switch (model.source) {
       case RecordSource::mismatch:
         return mismatch;
@@ -123,10 +130,12 @@ class VerdictWriter {
     if (!model.probabilities)
       return "Likeliest";
     const auto shares = permille(*model.probabilities);
-    const int share = shares[static_cast<std::size_t>(model.source)];
+    const auto of = [&shares](RecordSource source) { return shares[static_cast<std::size_t>(source)]; };
+    const int share =
+        model.drifts ? of(RecordSource::sensor) + of(RecordSource::disturbance) : of(model.source);
     return fmt::format(
         "{} ({})",
-        share == *std::max_element(shares.begin(), shares.end()) ? "Most likely" : "Likeliest of the faults",
+        share >= *std::max_element(shares.begin(), shares.end()) ? "Most likely" : "Likeliest of the faults",
         whole_percent_text(share));
   }
 
@@ -212,6 +221,11 @@ class VerdictWriter {
             "away {} of what the loop costs{}.",
             channel, promise_text(*action.promise), changes());
       case ActionKind::sensor:
+        if (verdict_.model.drifts && !verdict_.model.at.front().is_noise)
+          return fmt::format(
+              "Look at the sensor of {0}: hold it against another measurement. If it is right, look for what "
+              "disturbs {0}; leave the model as it is.",
+              cv(action.cv));
         return verdict_.model.source == RecordSource::sensor && !verdict_.model.at.front().is_noise
                    ? fmt::format(
                          "Look at the sensor of {}: hold it against another measurement before anything is "
@@ -252,7 +266,7 @@ class VerdictWriter {
     const Eigen::VectorXd& ratio = verdict_.action.promise->variance_ratio;
     for (Eigen::Index cv = 0; cv < ratio.size(); ++cv)
       changes.push_back(fmt::format("{} {:+d} %", this->cv(cv), std::lround(100.0 * (ratio(cv) - 1.0))));
-    return changes.empty() ? "" : fmt::format(" (variances: {})", fmt::join(changes, ", "));
+    return changes.empty() ? "" : fmt::format(" (costs: {})", fmt::join(changes, ", "));
   }
 
   std::string test(const std::string& channel) const {
@@ -273,7 +287,7 @@ class VerdictWriter {
     for (const Eigen::Index each : action.worsened)
       worse.push_back(cv(each));
     return fmt::format(
-        "Test {} with steps. Do not put it into the controller before: {} would vary more with it.", channel,
+        "Test {} with steps. Do not put it into the controller before: {} would cost more with it.", channel,
         joined(worse));
   }
 
@@ -294,6 +308,43 @@ class VerdictWriter {
     if (!verdict_.has_trials)
       return "Wait: assess again with simulated records (--trials), which show what is usual.";
     return "Wait for a record in which setpoints or disturbances move more.";
+  }
+
+  std::string benchmark() const {
+    const RecordBenchmark& benchmark = verdict_.benchmark;
+    const bool has_period = benchmark.first < benchmark.end;
+    const std::string from = has_period ? stamp(benchmark.first) : "",
+                      to = has_period ? stamp(benchmark.end - 1) : "";
+    switch (benchmark.use) {
+      case BenchmarkUse::named:
+        return fmt::format(
+            "The benchmark is {} to {}, which the study names: what the plant did then is its habit, and no "
+            "fault.",
+            from, to);
+      case BenchmarkUse::found:
+        return fmt::format(
+            "The benchmark is {} to {}, where the model is best: what the plant did then is its habit, even "
+            "if it was a fault.",
+            from, to);
+      case BenchmarkUse::proposed:
+        return fmt::format(
+            "No benchmark is named: what this plant always does counts as a fault. If the loop ran well "
+            "from {} to {}, where the model is best, put benchmark = [{}, {}] into [data] and assess again.",
+            from, to, toml_literal(from), toml_literal(to));
+      case BenchmarkUse::unfit:
+        return fmt::format(
+            "No benchmark is named, and none was found: {}. What this plant always does counts as a fault.",
+            has_period ? fmt::format("even from {} to {}, where the model is best, a channel of {} is wrong",
+                                     from, to, cv(benchmark.cv))
+                       : "in no period do all CVs have values and all MVs move");
+      case BenchmarkUse::none:
+        break;
+    }
+    if (!benchmark.is_wanted)
+      return "No benchmark is wanted (data.benchmark).";
+    return verdict_.model.answer == ModelAnswer::explains
+               ? "No benchmark is named, and none is needed: the model explains the record without one."
+               : "No benchmark is named.";
   }
 
   Lines scores() const {

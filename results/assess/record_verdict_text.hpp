@@ -15,6 +15,7 @@ namespace mpm {
 /// An answer a question.
 struct RecordVerdictText {
   std::string model, loop, action;
+  std::string benchmark;  ///< which period counts as the plant's habit, or could
   /// Why: a sentence each for the scores of the model, the costs, and the probabilities, with their
   /// thresholds.
   std::vector<std::string> scores, costs;

@@ -12,12 +12,14 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "analysis/findings/monitored_loop.hpp"
 #include "analysis/statistics/quantile.hpp"
 #include "analysis/statistics/signal_look.hpp"
+#include "analysis/validation/benchmark_period.hpp"
 #include "base/non_finite.hpp"
 #include "results/files/foreign_content.hpp"
 #include "results/files/utf8.hpp"
@@ -243,18 +245,13 @@ class DataSketcher {
   /// The quarter of the file in which the CVs vary least and every MV moves, as a comment: that the
   /// controller worked as designed there only people know.
   void write_benchmark() {
-    constexpr std::size_t kFewestRows = 60, kShare = 4, kSteps = 8;
-    const std::size_t length = rows_.times.size() / kShare;
-    if (!rows_.stamped || length < kFewestRows)
+    constexpr Eigen::Index kFewestRows = 60;
+    const auto rows = static_cast<Eigen::Index>(rows_.times.size());
+    if (!rows_.stamped || rows / kBenchmarkShare < kFewestRows)
       return;
-    std::optional<std::size_t> best;
-    double least = kInfinity;
-    for (std::size_t first = 0; first + length <= rows_.times.size(); first += length / kSteps)
-      if (const std::optional<double> unrest = unrest_in(first, length); unrest && *unrest < least) {
-        least = *unrest;
-        best = first;
-      }
-    if (!best)
+    const auto [first, end] =
+        quietest_period(numbers_of(plant_.cvs), numbers_of(plant_.mvs), rows / kBenchmarkShare);
+    if (first == end)
       return;
     line(
         "# With a period of this plant in which its controller worked as designed, what the plant always "
@@ -263,37 +260,27 @@ class DataSketcher {
     line(
         "# Guess: the quarter of the file in which the CVs vary least and every MV moves. If you know that "
         "it was");
-    line("# good, take the # away; `benchmark = \"found\"` looks for the period in which the model is best.");
-    line(fmt::format("# benchmark = [{}, {}]", toml_literal(rows_.text(rows_.times[*best])),
-                     toml_literal(rows_.text(rows_.times[*best + length - 1]))));
+    line("# good, take the # away; `assess` says in which quarter the model is best.");
+    line(fmt::format("# benchmark = [{}, {}]",
+                     toml_literal(rows_.text(rows_.times[static_cast<std::size_t>(first)])),
+                     toml_literal(rows_.text(rows_.times[static_cast<std::size_t>(end - 1)]))));
   }
 
-  /// sum_i log var y_i over the CVs in these rows; none where a CV lacks half of its values, or does not
-  /// vary, or an MV does not move.
-  std::optional<double> unrest_in(std::size_t first, std::size_t length) const {
-    double sum = 0.0;
-    bool has_cv = false;
-    for (const auto& [variable, column] : columns_) {
-      const auto is = [&, name = variable](const std::vector<PlantModel::Variable>& list) {
-        return std::any_of(list.begin(), list.end(), [&](const auto& each) { return each.name == name; });
-      };
-      if (!is(plant_.cvs) && !is(plant_.mvs))
+  /// The columns of these variables, one row each, NaN where there is no number; those that have one.
+  Eigen::MatrixXd numbers_of(const std::vector<PlantModel::Variable>& variables) const {
+    Eigen::MatrixXd numbers(static_cast<Eigen::Index>(variables.size()),
+                            static_cast<Eigen::Index>(file().rows()));
+    Eigen::Index count = 0;
+    for (const auto& [name, column] : columns_) {
+      if (std::none_of(variables.begin(), variables.end(),
+                       [of = name](const PlantModel::Variable& variable) { return variable.name == of; }))
         continue;
-      std::vector<double> values;
-      for (std::size_t row = first; row < first + length; ++row)
-        if (const std::optional<double> value = file().number(file().columns[column][row]))
-          values.push_back(*value);
-      if (2 * values.size() < length)
-        return std::nullopt;
-      const double deviation = SignalLook(std::move(values)).deviation;
-      if (!(deviation > 0.0))
-        return std::nullopt;
-      if (is(plant_.cvs)) {
-        sum += 2.0 * std::log(deviation);
-        has_cv = true;
-      }
+      for (std::size_t row = 0; row < file().rows(); ++row)
+        numbers(count, static_cast<Eigen::Index>(row)) =
+            file().number(file().columns[column][row]).value_or(kNaN);
+      ++count;
     }
-    return has_cv ? std::optional(sum) : std::nullopt;
+    return numbers.topRows(count);
   }
 
   void write_operating_point() {
@@ -311,9 +298,9 @@ class DataSketcher {
          }));
   }
 
-  /// The name of the column beside one, as AI101.SP is beside AI101.PV; none: there is none.
+  /// The name of column_beside().
   std::optional<std::string> beside(std::size_t column, const std::string& ending) const {
-    const auto found = file().find(file().names[column].substr(0, file().names[column].size() - 2) + ending);
+    const auto found = column_beside(file(), column, ending);
     return found ? std::optional(toml_literal(file().names[*found])) : std::nullopt;
   }
 

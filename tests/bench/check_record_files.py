@@ -264,7 +264,15 @@ def check_benchmark(files):
     assert any("look whether the loop ran well then" in warning for warning in found["warnings"]), found["warnings"]
     chosen = files.assess("late.csv", "benchmark = ['50', '149']", options=["--methods", "sse"])
     assert chosen["benchmark"] == {"from": "50", "to": "149"}, chosen["benchmark"]
-    assert files.assess("late.csv")["benchmark"] is None
+    none = files.assess("late.csv")
+    assert none["benchmark"] is None and float(none["proposed_benchmark"]["to"]) < 200, none["proposed_benchmark"]
+    proposed = [none["proposed_benchmark"][end] for end in ("from", "to")]
+    assert f'benchmark = ["{proposed[0]}", "{proposed[1]}"]' in none["verdict"][3], none["verdict"]
+    taken = files.assess("late.csv", f"benchmark = {proposed}")
+    assert taken["benchmark"] == none["proposed_benchmark"] and not taken["proposed_benchmark"], taken["benchmark"]
+    unwanted = files.assess("late.csv", "benchmark = 'none'")
+    assert not unwanted["benchmark"] and not unwanted["proposed_benchmark"], unwanted["verdict"]
+    assert unwanted["verdict"][3] == "No benchmark is wanted (data.benchmark).", unwanted["verdict"]
     for answer in (found, chosen):
         assert answer["methods"][0]["flagged"] and answer["methods"][0]["cv"] == "xD", answer["methods"][0]
     message = files.assess("late.csv", "benchmark = 'best'", code=2)

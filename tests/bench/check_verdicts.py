@@ -26,7 +26,7 @@ class Bench:
         judge(answer)
         brief = self.run(study, record, "--trials", str(trials), "--brief")
         assert len(brief.strip().splitlines()) <= 10, brief
-        for line in answer["verdict"][:3]:
+        for line in answer["verdict"][:4]:
             assert line in brief, (line, brief)
         return answer
 
@@ -47,7 +47,17 @@ def judge(answer):
         assert abs(sum(probabilities.values()) - 1) < 1e-9 and all(0 < p < 1 for p in probabilities.values()), probabilities
         if model["answer"] == "fails":
             faults = {source: p for source, p in probabilities.items() if source != "nothing"}
-            assert model["source"] == max(faults, key=faults.get), (model["source"], probabilities)
+            if model["drift"]:  # by its sensor or by a disturbance: together they are the most probable
+                both = probabilities["sensor"] + probabilities["disturbance"]
+                assert model["source"] in ("sensor", "disturbance") and both > max(
+                    p for source, p in faults.items() if source not in ("sensor", "disturbance")), probabilities
+                assert "cannot tell which" in answer["verdict"][0], answer["verdict"]
+            else:
+                assert model["source"] == max(faults, key=faults.get), (model["source"], probabilities)
+    assert answer["verdict"][3].startswith(("No benchmark", "The benchmark is")), answer["verdict"]
+    proposed = answer["proposed_benchmark"]
+    assert (proposed is not None) == ("assess again" in answer["verdict"][3]), answer["verdict"]
+    assert not proposed or (model["answer"] == "fails" and proposed["to"] in answer["verdict"][3]), answer["verdict"]
     assert action["kind"] and answer["verdict"][2], answer["verdict"]
     calm = model["answer"] == "explains" and loop["answer"] == "as_designed" and answer["controller"]["alike"]
     assert (action["kind"] == "nothing") == (calm and not model["late"]), answer["verdict"]
@@ -66,6 +76,7 @@ def check_mismatch_without_cost(bench):
     answer = bench.assess("wb-dmc", "gain2-nothing")
     assert answer["model"]["source"] == "mismatch" and [part["cv"] for part in answer["model"]["at"]] == ["xD"]
     is_gain(answer["model"]["mismatch"], "xD", "R", 2.0)
+    assert "a channel of xD is wrong" in answer["verdict"][3], answer["verdict"]  # the fault is no benchmark
     assert answer["loop"]["answer"] == "as_designed" and answer["action"]["kind"] in ("repair", "wait"), answer["action"]
     bench.run("wb-dmc", "gain2-nothing", "--trials", "40", "-o", bench.scratch / "page.html")
     page = (bench.scratch / "page.html").read_text()
@@ -79,9 +90,11 @@ def check_both(bench):
 
 
 def check_drift(bench):
-    """A sensor that drifts is no valve that sticks."""
+    """A sensor that drifts is no valve that sticks, and a disturbance that grows would look the same."""
     answer = bench.assess("hx", "drift-301")
-    assert answer["model"]["source"] in ("sensor", "none_of_these"), answer["probabilities"]
+    assert answer["model"]["drift"] == "T" or answer["model"]["source"] == "none_of_these", answer["probabilities"]
+    odds = answer["probabilities"]
+    assert abs(odds["sensor"] / odds["disturbance"] - 1) < 0.2 or not answer["model"]["drift"], odds
     assert answer["action"]["kind"] in ("sensor", "test"), answer["action"]
 
 

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_runs.hpp"
+#include "analysis/indicators/loop_cost.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "analysis/records/channel_error_fit.hpp"
@@ -16,11 +17,15 @@
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/controller_check.hpp"
 #include "analysis/records/cost_of_record.hpp"
+#include "analysis/records/held_columns.hpp"
 #include "analysis/records/model_check.hpp"
+#include "analysis/records/model_habit.hpp"
 #include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
+#include "analysis/records/record_verdict.hpp"
 #include "analysis/records/trial_record.hpp"
 #include "analysis/records/untold_part.hpp"
+#include "analysis/records/verdict_evidence.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/study_files/recorded_study.hpp"
 #include "analysis/study_files/study_library.hpp"
@@ -408,6 +413,156 @@ TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever de
   disturbed.record.y.row(0) += v;
   const RecordAlternatives slow = disturbed.alternatives();
   CHECK(std::max({slow.valve, slow.sensor, slow.data}) < slow.disturbance + 5.0);
+}
+
+/// Slow noise on both CVs that never stops, of this many standard deviations of their noise.
+void add_background(Suspect& suspect, double size) {
+  for (Eigen::Index cv = 0; cv < 2; ++cv) {
+    Eigen::VectorXd v = size * measurement_noise(suspect.study, 5).row(cv).transpose();
+    for (Eigen::Index k = 1; k < v.size(); ++k)
+      v(k) += 0.95 * v(k - 1);
+    suspect.record.y.row(cv) += v.transpose();
+  }
+}
+
+TEST_CASE("what a plant did in its benchmark is its habit, and what is new is not", "[records]") {
+  const auto score = [](const Suspect& suspect, Eigen::Index benchmark) {
+    const AssessedLoop loop = suspect.loop();
+    const auto habit =
+        benchmark == 0 ? nullptr : habit_of(suspect.frame.as_kept, 0.05, window_of(loop, 0, benchmark));
+    const ChannelErrorFit fit = ChannelErrorFits(suspect.frame.as_kept, 0.05, habit).of(loop, 0);
+    return error_score(fit.a, fit.left, fit.noise);
+  };
+  Suspect restless, wrong, calm;
+  add_background(restless, 2.0);
+  CHECK(score(restless, 0) > 2.0);
+  CHECK(score(restless, 150) < kFarTooLarge);
+  add_background(wrong, 2.0);
+  Eigen::RowVectorXd u = wrong.record.u.row(0);
+  u.head(200).setConstant(u(0));
+  wrong.record.y.row(0) += 2.0 * wrong.response(0, 0, u);
+  CHECK(score(wrong, 150) > kFarTooLarge);
+  CHECK(score(calm, 150) == Approx(score(calm, 0)).epsilon(0.2));
+  // Noise that the benchmark has as well is no other noise than that of the plant.
+  Suspect noisy;
+  noisy.record.y.row(1) += 15.0 * measurement_noise(noisy.study, 6).row(1);
+  const AssessedLoop loop = noisy.loop();
+  CHECK(unexplained_cvs(noisy.frame.as_kept, loop, 0.05).size() == 1);
+  const auto habit = habit_of(noisy.frame.as_kept, 0.05, window_of(loop, 0, 150));
+  CHECK(unexplained_cvs(noisy.frame.as_kept, loop, 0.05, habit.get()).empty());
+}
+
+TEST_CASE("a channel that is wrong throughout is wrong in every benchmark", "[records]") {
+  const auto channel_score = [](const Suspect& suspect) {
+    const auto [first, end] = best_period(suspect.frame, suspect.loop());
+    REQUIRE(end > first);
+    const AssessedLoop loop = suspect.loop();
+    return habit_of(suspect.frame.as_kept, 0.05, window_of(loop, first, end - first))
+        ->noise[0]
+        ->channel_score;
+  };
+  Suspect healthy, wrong;
+  CHECK(channel_score(healthy) < kFarTooLarge);
+  wrong.record.y.row(0) += wrong.response(0, 0, wrong.record.u.row(0));
+  CHECK(channel_score(wrong) > kFarTooLarge);
+}
+
+TEST_CASE("a drift is a sensor's or a disturbance's, and the verdict says both", "[records]") {
+  RecordAlternatives alternatives{.disturbance = -100.0,
+                                  .mismatch = -110.0,
+                                  .data = -120.0,
+                                  .sensor = -80.0,
+                                  .valve = -120.0,
+                                  .sensor_cv = 1};
+  OfSources weights;
+  weights[RecordSource::disturbance] = 1.0;
+  const SourceWeights found = with_alternatives(weights, alternatives, kNaN);
+  CHECK(found.of[RecordSource::sensor] == Approx(found.of[RecordSource::disturbance]).epsilon(1e-6));
+  VerdictEvidence evidence;
+  evidence.model_scores = Eigen::Vector2d(9.0, 1.0);
+  evidence.model_threshold = 1.2;
+  evidence.weights = found.of;
+  evidence.drift = found.drift;
+  evidence.sensor_cv = 1;
+  RecordVerdict verdict = record_verdict(evidence);
+  CHECK(verdict.model.drifts);
+  CHECK(verdict.action.kind == ActionKind::sensor);
+  CHECK(verdict.action.cv == 1);
+  alternatives.sensor = -100.0;  // no ramp explains more than slow noise does
+  const SourceWeights slow = with_alternatives(weights, alternatives, kNaN);
+  evidence.weights = slow.of;
+  evidence.drift = slow.drift;
+  verdict = record_verdict(evidence);
+  CHECK_FALSE(verdict.model.drifts);
+  CHECK(verdict.model.source == RecordSource::disturbance);
+}
+
+TEST_CASE("a CV that is held from one analysis to the next counts at its analyses only", "[records]") {
+  const Study study = find_study("wood-berry");
+  const PlantRecord measured = recorded_loop(study, study.plant.G, 0);
+  const auto judged_with = [&study](PlantRecord& record) { return with_held_columns(study, record); };
+  const auto held_by = [&measured](const std::function<bool(Eigen::Index)>& is_new) {
+    PlantRecord record = measured;
+    for (Eigen::Index k = 1; k < record.samples(); ++k)
+      if (!is_new(k))
+        record.y(1, k) = record.y(1, k - 1);
+    return record;
+  };
+  PlantRecord record = measured;
+  CHECK(judged_with(record).controller.analysers[1].period == 1);
+  CHECK(record.warnings.empty());
+  record = held_by([](Eigen::Index k) { return k % 4 == 0; });
+  CHECK(judged_with(record).controller.analysers[1].period == 4);
+  REQUIRE(record.warnings.size() == 1);
+  CHECK(record.warnings.front().starts_with("xB has a new value every 4 samples only"));
+  record = held_by([](Eigen::Index k) { return k % 7 == 0 || k % 5 == 0; });  // in no rhythm
+  CHECK(judged_with(record).controller.analysers[1].period == 1);
+  REQUIRE(record.warnings.size() == 1);
+  CHECK(record.warnings.front().find("held values count as measured") != std::string::npos);
+  record = measured;  // rounding repeats a value now and then
+  const double unit = 2.0 * study.simulation.noise_standard_deviation(1);
+  record.y.row(1) = unit * (record.y.row(1) / unit).array().round();
+  CHECK(judged_with(record).controller.analysers[1].period == 1);
+  CHECK(record.warnings.empty());
+}
+
+TEST_CASE("CVs that are late by the same have one clock", "[records]") {
+  const Study study = find_study("wood-berry");
+  PlantRecord record = recorded_loop(study, study.plant.G, 0);
+  const RecordFrame frame = frame_of(record, true, 0.05);
+  record.y.rightCols(record.samples() - 2) = Eigen::MatrixXd(record.y.leftCols(record.samples() - 2));
+  const std::vector<std::string> said = column_lags(frame, record);
+  REQUIRE(said.size() == 1);
+  CHECK(said.front().starts_with("the columns of xD, xB seem to be 2 samples too late, all by the same"));
+}
+
+TEST_CASE("samples that do not count cost nothing in a repair", "[records]") {
+  const Study study = find_study("wood-berry");
+  Trajectory loop = run_closed_loop(study, study.plant.G, experiment_signals(study, basis_draw()),
+                                    qp_solver_factory("auto"));
+  std::vector<bool> counted(static_cast<std::size_t>(loop.y.cols()), true);
+  std::fill(counted.begin() + 100, counted.begin() + 140, false);
+  const Eigen::VectorXd costs = counted_costs(study, loop, counted);
+  const double total = loop_cost(study, loop, counted).total();
+  loop.y.middleCols(110, 20).array() += 1000.0;
+  CHECK(counted_costs(study, loop, counted) == costs);
+  CHECK(loop_cost(study, loop, counted).total() == total);
+  CHECK(loop_cost(study, loop).total() > 10.0 * total);
+}
+
+TEST_CASE("a level that wanders within its range costs nothing, in a repair either", "[records]") {
+  const Study study = find_study("suite-evaporator");
+  REQUIRE(study.plant.G.is_integrating(0));  // a setpoint of little weight, and a range
+  Trajectory loop;
+  loop.y = Eigen::MatrixXd::Zero(study.cv_count(), study.simulation.samples);
+  const std::vector<bool> all(static_cast<std::size_t>(loop.y.cols()), true);
+  const double still = counted_costs(study, loop, all)(0);
+  const double upper = study.controller.cv_soft.upper(0);
+  for (Eigen::Index k = 0; k < loop.y.cols(); ++k)
+    loop.y(0, k) = 0.9 * upper * std::sin(0.05 * static_cast<double>(k));
+  CHECK(counted_costs(study, loop, all)(0) == still);
+  loop.y(0, 7) = 2.0 * upper;
+  CHECK(counted_costs(study, loop, all)(0) > still);
 }
 
 TEST_CASE("the cost of a CV is its controller's: about a setpoint, or outside of a range", "[records]") {

@@ -208,41 +208,48 @@ TEST_CASE("a world whose loop is not stable is warned of", "[validation]") {
   CHECK_THAT(found(), Contains("the study leaves their experiments out"));
 }
 
-/// Two CVs of 300 samples, whose simulation errors are white with these deviations in three thirds.
-AssessedLoop loop_of_thirds(const Eigen::Matrix<double, 2, 3>& deviations) {
-  AssessedLoop loop;
-  loop.y_sim = Eigen::MatrixXd::Zero(2, 300);
-  loop.y = loop.y_sim;
+/// Simulation errors of two CVs over 300 samples, white with these deviations in three thirds.
+Eigen::MatrixXd errors_in_thirds(const Eigen::Matrix<double, 2, 3>& deviations) {
+  Eigen::MatrixXd errors(2, 300);
   RandomStream stream(20261122, 0, StreamId::measurement_noise);
   for (Eigen::Index k = 0; k < 300; ++k)
     for (Eigen::Index cv = 0; cv < 2; ++cv)
-      loop.y(cv, k) += deviations(cv, k / 100) * stream.normal();
-  return loop;
+      errors(cv, k) = deviations(cv, k / 100) * stream.normal();
+  return errors;
 }
+
+const Eigen::MatrixXd kNoInputs(0, 300);  // inputs
 
 TEST_CASE("the quietest period is where the model is best, whatever the units", "[validation]") {
   const Eigen::Matrix<double, 2, 3> deviations{{3.0, 1.0, 2.0}, {30.0, 20.0, 60.0}};
-  AssessedLoop loop = loop_of_thirds(deviations);
-  const auto [first, end] = quietest_period(loop, 80);
+  Eigen::MatrixXd errors = errors_in_thirds(deviations);
+  const auto [first, end] = quietest_period(errors, kNoInputs, 80);
   CHECK(end - first == 80);
   CHECK(first >= 90);
   CHECK(end <= 210);
+  // Where an input stands still that moves elsewhere, nothing is learnt of its channels; one that never moves
+  // excludes no period.
+  Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(2, 300);
+  CHECK(quietest_period(errors, inputs, 80) == std::pair(first, end));
+  inputs.row(1).tail(50).setOnes();
+  const auto moved = quietest_period(errors, inputs, 80);
+  CHECK((moved.first < 250 && moved.second > 250));
   // A constant error costs nothing, another unit neither.
-  loop.y.row(0).array() += 100.0;
-  loop.y.row(1) *= 1000.0;
-  CHECK(quietest_period(loop, 80) == std::pair(first, end));
+  errors.row(0).array() += 100.0;
+  errors.row(1) *= 1000.0;
+  CHECK(quietest_period(errors, kNoInputs, 80) == std::pair(first, end));
   // A CV counts only where half of it is there.
-  loop.y.row(1).setConstant(kNaN);
-  CHECK(quietest_period(loop, 80).first >= 90);
-  loop.y.row(0).segment(90, 120).setConstant(kNaN);
-  CHECK(quietest_period(loop, 80).first >= 170);
+  errors.row(1).setConstant(kNaN);
+  CHECK(quietest_period(errors, kNoInputs, 80).first >= 90);
+  errors.row(0).segment(90, 120).setConstant(kNaN);
+  CHECK(quietest_period(errors, kNoInputs, 80).first >= 170);
 }
 
 TEST_CASE("a record without enough samples has no quietest period", "[validation]") {
-  AssessedLoop loop = loop_of_thirds(Eigen::Matrix<double, 2, 3>::Ones());
-  CHECK(quietest_period(loop, 301) == std::pair<Eigen::Index, Eigen::Index>(0, 0));
-  loop.y.setConstant(kNaN);
-  CHECK(quietest_period(loop, 80) == std::pair<Eigen::Index, Eigen::Index>(0, 0));
+  Eigen::MatrixXd errors = errors_in_thirds(Eigen::Matrix<double, 2, 3>::Ones());
+  CHECK(quietest_period(errors, kNoInputs, 301) == std::pair<Eigen::Index, Eigen::Index>(0, 0));
+  errors.setConstant(kNaN);
+  CHECK(quietest_period(errors, kNoInputs, 80) == std::pair<Eigen::Index, Eigen::Index>(0, 0));
 }
 
 }  // namespace

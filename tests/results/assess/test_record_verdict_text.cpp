@@ -63,6 +63,17 @@ class EvidenceDraw {
       of.onset = FaultOnset{3, 2, 5};
     for (std::size_t place = 1; place < kRecordSources; ++place)
       of.weights.each[place] = chance(0.5) ? 0.0 : chance(0.3) ? 1.0 : between(0.0, 1.0);
+    if (chance(0.3)) {  // by either cause
+      of.drift = between(0.0, 1.0);
+      of.weights[RecordSource::sensor] = of.drift;
+      of.weights[RecordSource::disturbance] += of.drift;
+    }
+    of.benchmark = {.use = static_cast<BenchmarkUse>(index(3)), .cv = index(cvs_), .is_wanted = chance(0.8)};
+    if (chance(0.8) || of.benchmark.use != BenchmarkUse::none) {
+      of.benchmark.first = 1;
+      of.benchmark.end = 4;
+      of.benchmark.channel_score = chance(0.2) ? kNaN : between(0.0, 6.0);
+    }
     if (chance(0.7)) {
       const double size = between(0.3, 3.0);
       of.mismatch = NamedMismatch{{index(cvs_), index(mvs_)}, static_cast<MismatchParameter>(index(7))};
@@ -190,8 +201,16 @@ void read_probabilities(const RecordVerdictText& text, Reading& reading) {
     sum += share;
     largest = std::max(largest, share);
   }
-  if (std::smatch likely; std::regex_search(text.model, likely, std::regex("Most likely \\(([0-9]+) %")))
-    reading.demand(std::abs(std::stod(likely[1]) - largest) <= 0.5, "the most likely, and a likelier one");
+  if (std::smatch likely; std::regex_search(text.model, likely, std::regex("Most likely \\(([0-9]+) %"))) {
+    const auto share_of = [&parts](RecordSource source) {
+      return std::stod(parts[static_cast<std::size_t>(source)][1]);
+    };
+    const bool drifts = has(text.model, "by its sensor or by an unmeasured disturbance");
+    const double said =
+        drifts ? share_of(RecordSource::sensor) + share_of(RecordSource::disturbance) : largest;
+    reading.demand(std::abs(std::stod(likely[1]) - said) <= 0.5 && said >= largest,
+                   "the most likely, and a likelier one");
+  }
   reading.demand(parts.empty() || (parts.size() == kRecordSources && std::abs(sum - 100.0) < 1e-9),
                  "probabilities that do not add up: " + text.probabilities);
   reading.demand(!std::regex_search(text.model, std::regex("\\((0|100) %\\)")), "certain: " + text.model);
@@ -214,8 +233,8 @@ void read_action(const RecordVerdictText& text, Reading& reading) {
                    "a gain and what is said of it: " + text.action);
   }
   std::smatch changes;
-  if (std::regex_search(text.action, changes, std::regex("variances: (.*)\\)")))
-    reading.demand(promises && has(changes[1], " -"), "a gain, and no variance falls: " + text.action);
+  if (std::regex_search(text.action, changes, std::regex("costs: (.*)\\)")))
+    reading.demand(promises && has(changes[1], " -"), "a gain, and no cost falls: " + text.action);
   if (std::smatch repaired; std::regex_search(text.action, repaired, std::regex("Repair (\\w+/\\w+)")))
     reading.demand(has(text.model, repaired[1]), "a repair of what is not wrong: " + text.action);
   reading.demand(!(has(text.model, "and not the model") && has(text.action, "Repair")),
@@ -224,12 +243,32 @@ void read_action(const RecordVerdictText& text, Reading& reading) {
                  "a bound with an end");
 }
 
+void read_benchmark(const RecordVerdictText& text, const std::vector<std::string>& cvs, Reading& reading) {
+  const std::string& said = text.benchmark;
+  const bool explains = has(text.model, "The model explains the record.");
+  const bool fails = has(text.model, "no longer explains") || has(text.model, "does not explain");
+  reading.demand(!said.empty(), "no word on the benchmark");
+  reading.demand(!has(said, "none is needed") || explains, "none is needed, and the model fails: " + said);
+  reading.demand(!(has(said, "assess again") || has(said, "none was found")) || fails,
+                 "a benchmark is sought, and the model does not fail: " + said);
+  reading.demand(!(fails && said == "No benchmark is named."),
+                 "no word on what it is worth without: " + said);
+  if (has(said, "assess again"))
+    reading.demand(has(said, "benchmark = [\"1\", \"3\"]"), "a period without its line: " + said);
+  if (has(said, "is wrong"))
+    reading.demand(std::any_of(cvs.begin(), cvs.end(), [&](const auto& cv) { return names(said, cv); }),
+                   "a channel of no CV: " + said);
+  reading.demand(!(has(text.model, "by its sensor or by") && has(text.action, "Repair")),
+                 "a repair of a model that something drifts away from");
+}
+
 Reading reading_of(const RecordVerdictText& text, const std::vector<std::string>& cvs) {
   Reading reading;
   read_scores(text, cvs, reading);
   read_costs(text, reading);
   read_probabilities(text, reading);
   read_action(text, reading);
+  read_benchmark(text, cvs, reading);
   return reading;
 }
 
@@ -251,6 +290,8 @@ TEST_CASE("record verdict: no sentence contradicts another, whatever the evidenc
     ++said[std::string(to_string(verdict.action.kind))];
     ++said[std::string(to_string(verdict.model.source))];
     ++said[verdict.found()];
+    ++said["benchmark " + std::string(to_string(verdict.benchmark.use))];
+    said["drift"] += verdict.model.drifts ? 1 : 0;
   }
   // Every answer was among them.
   for (const ActionKind kind : enumerators<ActionKind>())
@@ -259,6 +300,9 @@ TEST_CASE("record verdict: no sentence contradicts another, whatever the evidenc
     CHECK(said[std::string(to_string(source))] > 20);
   for (const char* found : {"fault", "nothing", "none", "other_controller", "unexplained_cost"})
     CHECK(said[found] > 20);
+  for (const BenchmarkUse use : enumerators<BenchmarkUse>())
+    CHECK(said["benchmark " + std::string(to_string(use))] > 20);
+  CHECK(said["drift"] > 20);
 }
 
 /// The text of a healthy record, with one sentence exchanged.
@@ -267,6 +311,7 @@ RecordVerdictText well() {
       .model = "The model explains the record.",
       .loop = "It costs no more than designed (xD 1.04 times, xB 1.01 times the loop as designed).",
       .action = "Nothing.",
+      .benchmark = "No benchmark is named, and none is needed: the model explains the record without one.",
       .scores = {"All CVs: score 1.02, threshold 1.22: explained."},
       .costs = {"xD: 1.04 times, threshold 1.1: as designed.", "xB: 1.01 times, threshold 1.1: as designed."},
       .probabilities =
@@ -303,6 +348,11 @@ TEST_CASE("record verdict: the reader of the text above notices each contradicti
   CHECK(notices(text));
   text = well();
   text.model = "The model explains the record. at least 10.8 (10 to 11)";
+  CHECK(notices(text));
+  text = well();
+  text.benchmark = "No benchmark is named: put benchmark = [\"1\", \"3\"] into [data] and assess again.";
+  CHECK(notices(text));
+  text.benchmark = "";
   CHECK(notices(text));
 }
 

@@ -1,0 +1,67 @@
+#include "analysis/records/model_habit.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "analysis/methods/ours/base_noise.hpp"
+#include "analysis/records/channel_health.hpp"
+#include "analysis/records/coloured_noise.hpp"
+#include "base/error.hpp"
+
+namespace mpm {
+namespace {
+
+/// By generalised least squares: noise that is not white, and moves of the controller that answer it, would
+/// otherwise look like errors of the channels.
+NoiseHabit noise_habit(const ChannelErrorFit& fit) {
+  constexpr int kPasses = 5;
+  NoiseHabit habit{.autoregression = Eigen::VectorXd::Zero(kNoiseOrder), .differences = fit.noise};
+  Eigen::VectorXd a = fit.a;
+  double variance = std::max(fit.noise, fit.left);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const Eigen::MatrixXd X = whitened_by(habit.autoregression, fit.X);
+    const Eigen::VectorXd e = whitened_by(habit.autoregression, fit.e);
+    Eigen::MatrixXd A = X.transpose() * X / variance;
+    A.diagonal().array() += 1.0;
+    a = A.ldlt().solve(X.transpose() * e / variance);
+    habit.autoregression = autoregression_of(fit.e - fit.X * a);
+    variance = std::max(std::numeric_limits<double>::min(),
+                        whitened_by(habit.autoregression, fit.e - fit.X * a).squaredNorm() /
+                            static_cast<double>(fit.e.size() - kNoiseOrder));
+  }
+  habit.variance = variance;
+  habit.channel_score = error_score(a, 0.0, 1.0);
+  return habit;
+}
+
+}  // namespace
+
+std::shared_ptr<const ModelHabit> habit_of(const Study& study, double delta, const AssessedLoop& benchmark,
+                                           std::shared_ptr<const ModelCorrection> correction) {
+  auto habit = std::make_shared<ModelHabit>();
+  habit->first = benchmark.first;
+  habit->end = benchmark.first + benchmark.samples();
+  const AssessedLoop* seen = &benchmark;
+  std::shared_ptr<const AssessedLoop> corrected;
+  if (correction) {
+    try {
+      corrected = correction->corrected(benchmark);
+      seen = corrected.get();
+      habit->correction = std::move(correction);
+    } catch (const InputError&) {  // what it shows has no likelihood: nothing is learnt from it
+    }
+  }
+  const ChannelErrorFits fits(study, delta);
+  for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+    const Eigen::RowVectorXd e = seen->y.row(cv) - seen->y_sim.row(cv);
+    const bool tells = (!e.array().isNaN()).count() >= kFewestNoiseSamples;
+    habit->noise.push_back(tells ? std::optional(noise_habit(fits.of(*seen, cv))) : std::nullopt);
+  }
+  return habit;
+}
+
+}  // namespace mpm

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/records/channel_error_fit.hpp"
+#include "scenarios/study/study.hpp"
+
+// What a benchmark period of a record shows of the errors of its model: the plant's habit, and no fault.
+
+namespace mpm {
+
+/// The habit that the period `benchmark` shows, a window of a record as judged_loop() has it, with errors of
+/// the channels of the relative size `delta` above 0. With a correction that of the context is taken off
+/// before, and kept.
+std::shared_ptr<const ModelHabit> habit_of(const Study& study, double delta, const AssessedLoop& benchmark,
+                                           std::shared_ptr<const ModelCorrection> correction = nullptr);
+
+}  // namespace mpm
