@@ -42,6 +42,7 @@ std::vector<Eigen::Index> samples_of(const Eigen::RowVectorXd& e, double& noise)
 /// e and X less what the habit predicts of them, over the samples whose past is known: those before them
 /// follow each other as closely as any do, `closest` samples apart.
 void whiten(const NoiseHabit& habit, Eigen::Index closest, double least, ChannelErrorFit& fit) {
+  fit.e -= fit.X * habit.errors;
   const Eigen::Index p = habit.autoregression.size();
   std::vector<Eigen::Index> kept, samples;  // places in what is whitened, and in the loop
   for (std::size_t i = static_cast<std::size_t>(p); i < fit.samples.size(); ++i)
@@ -113,11 +114,8 @@ ChannelErrorFits::ChannelErrorFits(const Study& study, double delta, std::shared
   }
 }
 
-ChannelErrorFit ChannelErrorFits::of(const AssessedLoop& as_judged, Eigen::Index cv) const {
+ChannelErrorFit ChannelErrorFits::of(const AssessedLoop& loop, Eigen::Index cv) const {
   ChannelErrorFit fit;
-  const std::shared_ptr<const AssessedLoop> corrected =
-      habit_ && habit_->correction ? habit_->correction->corrected(as_judged) : nullptr;
-  const AssessedLoop& loop = corrected ? *corrected : as_judged;
   const Eigen::RowVectorXd all = loop.y.row(cv) - loop.y_sim.row(cv);
   fit.samples = samples_of(all, fit.noise);
   const std::vector<Eigen::Index> samples = fit.samples;
@@ -136,12 +134,8 @@ ChannelErrorFit ChannelErrorFits::of(const AssessedLoop& as_judged, Eigen::Index
               .transpose();
   const Eigen::MatrixXd U = untold_columns(study_, cv, starts_after_unknown(loop.y, settling_),
                                            loop.samples())(samples, Eigen::all);
-  if (e.size() > U.cols()) {
-    const auto of_untold = U.completeOrthogonalDecomposition();
-    fit.X -= U * of_untold.solve(fit.X);
-    if (corrected)
-      fit.e -= U * of_untold.solve(fit.e);
-  }
+  if (e.size() > U.cols())
+    fit.X -= U * U.completeOrthogonalDecomposition().solve(fit.X);
   if (habit_ && habit_->noise[static_cast<std::size_t>(cv)])
     whiten(*habit_->noise[static_cast<std::size_t>(cv)], sample_spacing(all.transpose()), least, fit);
   // The noise of errors that no channel explains is larger than that of their differences.

@@ -60,6 +60,7 @@ PartialErrorFit fit_of(const ChannelErrorSums& sums, double noise);
 /// with X a as ChannelErrorFit has it, and n an autoregression of order 3
 /// (analysis/records/coloured_noise.hpp).
 struct NoiseHabit {
+  Eigen::VectorXd errors = {};  ///< the most likely a of the period
   Eigen::VectorXd autoregression;
   double variance = 0.0;       ///< of w
   double differences = 0.0;    ///< ChannelErrorFit::noise of the period
@@ -70,14 +71,12 @@ struct NoiseHabit {
 struct ModelHabit {
   Eigen::Index first = 0, end = 0;               ///< samples of the period in its record
   std::vector<std::optional<NoiseHabit>> noise;  ///< of each CV; none where the period has too few samples
-  /// What the period shows of the errors of the channels; null: they are not looked at, or nothing is shown.
-  std::shared_ptr<const ModelCorrection> correction = nullptr;
 };
 
 /// Fits of the CVs of a study whose channels may be off by the relative size `delta`; 0: p = 0.
 class ChannelErrorFits {
  public:
-  /// With a habit the errors are those beside it: y_sim has its correction, e and X are whitened by its
+  /// With a habit the errors are those beside it: e is without its X a, e and X are whitened by its
   /// autoregression, and `noise` is its variance; null: the record itself says what is noise.
   ChannelErrorFits(const Study& study, double delta, std::shared_ptr<const ModelHabit> habit = nullptr);
 

@@ -86,8 +86,7 @@ double variance_of_known(const Eigen::RowVectorXd& y) {
 
 std::shared_ptr<const ModelHabit> record_habit(const AssessmentContext& context, double delta) {
   const bool is_period = context.benchmark && context.benchmark->whole != nullptr;
-  return is_period && delta > 0.0 ? habit_of(context.study, delta, *context.benchmark, context.correction)
-                                  : nullptr;
+  return is_period && delta > 0.0 ? habit_of(context.study, delta, *context.benchmark) : nullptr;
 }
 
 std::vector<UnexplainedCv> unexplained_cvs(const Study& study, const AssessedLoop& loop, double delta,

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <utility>
 
 #include <Eigen/Cholesky>
 
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/records/channel_health.hpp"
 #include "analysis/records/coloured_noise.hpp"
-#include "base/error.hpp"
 
 namespace mpm {
 namespace {
@@ -33,6 +31,7 @@ NoiseHabit noise_habit(const ChannelErrorFit& fit) {
                         whitened_by(habit.autoregression, fit.e - fit.X * a).squaredNorm() /
                             static_cast<double>(fit.e.size() - kNoiseOrder));
   }
+  habit.errors = a;
   habit.variance = variance;
   habit.channel_score = error_score(a, 0.0, 1.0);
   return habit;
@@ -40,26 +39,15 @@ NoiseHabit noise_habit(const ChannelErrorFit& fit) {
 
 }  // namespace
 
-std::shared_ptr<const ModelHabit> habit_of(const Study& study, double delta, const AssessedLoop& benchmark,
-                                           std::shared_ptr<const ModelCorrection> correction) {
+std::shared_ptr<const ModelHabit> habit_of(const Study& study, double delta, const AssessedLoop& benchmark) {
   auto habit = std::make_shared<ModelHabit>();
   habit->first = benchmark.first;
   habit->end = benchmark.first + benchmark.samples();
-  const AssessedLoop* seen = &benchmark;
-  std::shared_ptr<const AssessedLoop> corrected;
-  if (correction) {
-    try {
-      corrected = correction->corrected(benchmark);
-      seen = corrected.get();
-      habit->correction = std::move(correction);
-    } catch (const InputError&) {  // what it shows has no likelihood: nothing is learnt from it
-    }
-  }
   const ChannelErrorFits fits(study, delta);
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
-    const Eigen::RowVectorXd e = seen->y.row(cv) - seen->y_sim.row(cv);
+    const Eigen::RowVectorXd e = benchmark.y.row(cv) - benchmark.y_sim.row(cv);
     const bool tells = (!e.array().isNaN()).count() >= kFewestNoiseSamples;
-    habit->noise.push_back(tells ? std::optional(noise_habit(fits.of(*seen, cv))) : std::nullopt);
+    habit->noise.push_back(tells ? std::optional(noise_habit(fits.of(benchmark, cv))) : std::nullopt);
   }
   return habit;
 }

@@ -11,9 +11,7 @@
 namespace mpm {
 
 /// The habit that the period `benchmark` shows, a window of a record as judged_loop() has it, with errors of
-/// the channels of the relative size `delta` above 0. With a correction that of the context is taken off
-/// before, and kept.
-std::shared_ptr<const ModelHabit> habit_of(const Study& study, double delta, const AssessedLoop& benchmark,
-                                           std::shared_ptr<const ModelCorrection> correction = nullptr);
+/// the channels of the relative size `delta` above 0.
+std::shared_ptr<const ModelHabit> habit_of(const Study& study, double delta, const AssessedLoop& benchmark);
 
 }  // namespace mpm

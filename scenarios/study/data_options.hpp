@@ -66,7 +66,7 @@ struct DataOptions {
   std::vector<std::string> candidates;  ///< columns of signals that the model does not know
   GapFill fill = GapFill::none;         ///< what methods find where a CV is missing
   std::vector<std::string> period;      ///< two time stamps; empty: the whole file
-  std::vector<std::string> benchmark;   ///< two time stamps, or "found"; empty: the simulated loop
+  std::vector<std::string> benchmark;   ///< two time stamps, "found" or "none"; empty: none is named
 
   bool operator==(const DataOptions&) const = default;
 };
