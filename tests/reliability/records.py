@@ -1,10 +1,12 @@
 """Records of plants that nobody here has made (foreign_plant.py), assessed: how often the verdict is right.
 
-usage: records.py MPMBENCH [--seed S] [--healthy N] [--faulty N] [--trials T] [--plants A,B] [--kinds K,L] [--folder F]
+usage: records.py MPMBENCH [--seed S] [--healthy N] [--faulty N] [--trials T] [--plants A,B] [--kinds K,L] [--benchmark]
+                  [--folder F]
 
 Each record has a plant of its own: every channel is off by 2 to 8 %, every CV has a background that never stops and is
 no AR(1), the record begins midway, and a historian has rounded it and lost values. The study has the right structure
-and the tuning of the DMC; the controller that it describes is that of mpmbench. No benchmark is named.
+and the tuning of the DMC; the controller that it describes is that of mpmbench. With --benchmark a period before the middle
+third is named as the benchmark, and no fault begins before; otherwise half of the faults are there from the first row.
 
 Prints a line of JSON for each record, then a table (Markdown) and one object with the counts of the goals. Exit code 1 if
 a command fails, or if more than 3 % of the healthy records are condemned.
@@ -75,7 +77,7 @@ setpoint = {{{setpoints}}}
 """
 
 
-def study_text(name, plant, noise):
+def study_text(name, plant, noise, has_benchmark):
     def variables(names):
         return ", ".join(f'{{name = "{x}", unit = "1"}}' for x in names)
 
@@ -95,11 +97,12 @@ def study_text(name, plant, noise):
                             f"hard = [{-foreign_plant.LIMIT}, {foreign_plant.LIMIT}]}}" for mv in plant["mvs"]),
         cv_tuning="\n".join(f"{cv} = {{setpoint_weight = 1.0, hard = [-inf, inf]}}" for cv in plant["cvs"]),
         noise=", ".join(f"{cv} = {s}" for cv, s in zip(plant["cvs"], noise)), steps=", ".join(moved),
-        disturbance=float(noise.mean()), setpoints=", ".join(f'{cv} = "{cv}.SP"' for cv in plant["cvs"]))
+        disturbance=float(noise.mean()), setpoints=", ".join(f'{cv} = "{cv}.SP"' for cv in plant["cvs"])) + (
+            f'benchmark = ["{ROWS // 6}", "{ROWS // 3 - 1}"]\n' if has_benchmark else "")
 
 
-def drawn_fault(kind, plant, chance):
-    """A fault of the kind, from the first row on or from a row in the middle third of the record."""
+def drawn_fault(kind, plant, chance, midway):
+    """A fault of the kind, from the first row on or, where it has to and often otherwise, from the middle third on."""
     def either(low, high):
         return chance.uniform(*(low if chance.random() < 0.5 else high))
 
@@ -109,7 +112,7 @@ def drawn_fault(kind, plant, chance):
             "dead_time": lambda: chance.uniform(2, 5), "output": lambda: chance.uniform(0.1, 0.4),
             "input": lambda: chance.uniform(0.1, 0.5), "bias": lambda: chance.uniform(0.3, 0.8),
             "drift": lambda: chance.uniform(0.5, 1.5)}.get(kind, lambda: chance.uniform(0.1, 0.4))()
-    midway = kind in ("bias", "drift", "stuck") or chance.random() < 0.5
+    midway = chance.random() < 0.5 or midway or kind in ("bias", "drift", "stuck")
     onset = int(chance.uniform(ROWS / 3, 2 * ROWS / 3)) if midway and kind not in foreign_plant.SOURCES["data"] else 0
     growth = int(chance.choice([0, 200])) if onset else 0
     return foreign_plant.Fault(kind, cv, mv if kind in foreign_plant.SOURCES["valve"] + ["input"] else x, size, onset, growth)
@@ -138,15 +141,15 @@ def historian(plant, loop, chance):
     return "\n".join(lines) + "\n"
 
 
-def assessed(program, folder, name, kind, seed, trials):
+def assessed(program, folder, name, kind, seed, trials, has_benchmark):
     """One record: what is true, and what is said."""
     plant, number = foreign_plant.PLANTS[name], [seed, *f"{name} {kind}".encode()]
     chance = numpy.random.default_rng(number)
-    fault = drawn_fault(kind, plant, chance)
+    fault = drawn_fault(kind, plant, chance, has_benchmark)
     loop = foreign_plant.simulated(plant, fault, number, ROWS)
     without = foreign_plant.simulated(plant, foreign_plant.Fault("healthy", onset=fault.onset), number, ROWS)
     study, record = folder / f"{name}.toml", folder / f"{name}-{kind}-{seed}.csv"
-    study.write_text(study_text(name, plant, loop.noise))
+    study.write_text(study_text(name, plant, loop.noise, has_benchmark))
     record.write_text(historian(plant, loop, chance))
     result = subprocess.run([program, "assess", study, record, "--trials", str(trials), "--json", "--quiet", "--jobs", "1",
                              "--calibration", record.with_suffix(".h5")], capture_output=True, text=True)
@@ -185,6 +188,7 @@ def main():
     parser.add_argument("--trials", type=int, default=100)
     parser.add_argument("--plants", default=",".join(foreign_plant.PLANTS), type=lambda text: text.split(","))
     parser.add_argument("--kinds", default=",".join(KINDS), type=lambda text: text.split(","))
+    parser.add_argument("--benchmark", action="store_true")
     parser.add_argument("--folder", type=pathlib.Path, help="keeps studies and records there")
     options = parser.parse_args()
     outcomes = []
@@ -195,7 +199,8 @@ def main():
         wanted = [("healthy", plants[i % len(plants)], i) for i in range(options.healthy)]
         wanted += [(kinds[i % len(kinds)], plants[(i + i // len(kinds)) % len(plants)], i) for i in range(options.faulty)]
         for kind, plant, i in wanted:
-            outcomes.append(assessed(options.program, folder, plant, kind, 1000 * options.seed + i, options.trials))
+            outcomes.append(assessed(options.program, folder, plant, kind, 1000 * options.seed + i, options.trials,
+                                     options.benchmark))
             print(json.dumps(outcomes[-1]), flush=True)
     print_table(outcomes)
     goals = counts(outcomes)
