@@ -6,23 +6,23 @@ namespace mpm {
 namespace {
 
 /// From `mpm` on, answers are sources in the same order.
-LoopAnswer answer_naming(ToldSource source) {
-  constexpr int kFirst = static_cast<int>(LoopAnswer::mpm) - static_cast<int>(ToldSource::mpm);
-  return static_cast<LoopAnswer>(static_cast<int>(source) + kFirst);
+AnsweredSource answer_naming(ToldSource source) {
+  constexpr int kFirst = static_cast<int>(AnsweredSource::mpm) - static_cast<int>(ToldSource::mpm);
+  return static_cast<AnsweredSource>(static_cast<int>(source) + kFirst);
 }
 
 }  // namespace
 
-LoopAnswer loop_answer(const LoopOutcome& said) {
+AnsweredSource answered_source(const LoopOutcome& said) {
   if (!said.answered)
-    return LoopAnswer::no_answer;
+    return AnsweredSource::no_answer;
   if (!said.flagged)
-    return LoopAnswer::none;
-  return said.told == ToldSource::none ? LoopAnswer::unnamed : answer_naming(said.told);
+    return AnsweredSource::none;
+  return said.told == ToldSource::none ? AnsweredSource::unnamed : answer_naming(said.told);
 }
 
-LoopAnswer right_answer(ToldSource truth) {
-  return truth == ToldSource::none ? LoopAnswer::none : answer_naming(truth);
+AnsweredSource right_answer(ToldSource truth) {
+  return truth == ToldSource::none ? AnsweredSource::none : answer_naming(truth);
 }
 
 void SourceConfusions::add(const SourceConfusions& more) {
@@ -31,18 +31,18 @@ void SourceConfusions::add(const SourceConfusions& more) {
       counts_[row][column] += more.counts_[row][column];
 }
 
-std::int64_t SourceConfusions::of(ToldSource truth, LoopAnswer answer) const {
+std::int64_t SourceConfusions::of(ToldSource truth, AnsweredSource answer) const {
   return counts_[static_cast<std::size_t>(truth)][static_cast<std::size_t>(answer)];
 }
 
 std::int64_t SourceConfusions::of(ToldSource truth) const {
   std::int64_t sum = 0;
-  for (const LoopAnswer answer : enumerators<LoopAnswer>())
+  for (const AnsweredSource answer : enumerators<AnsweredSource>())
     sum += of(truth, answer);
   return sum;
 }
 
-std::int64_t SourceConfusions::of(LoopAnswer answer) const {
+std::int64_t SourceConfusions::of(AnsweredSource answer) const {
   std::int64_t sum = 0;
   for (const ToldSource truth : enumerators<ToldSource>())
     sum += of(truth, answer);

@@ -11,7 +11,8 @@
 
 namespace mpm {
 
-enum class LoopAnswer : std::int8_t {
+/// What a method answers about the source of a loop.
+enum class AnsweredSource : std::int8_t {
   no_answer = 0,  ///< no verdict
   none = 1,       ///< not flagged
   unnamed = 2,    ///< flagged, without a source
@@ -25,29 +26,29 @@ enum class LoopAnswer : std::int8_t {
 };
 
 template <>
-inline constexpr auto kWords<LoopAnswer> = word_list("no_answer", "none", "unnamed", "mpm", "ud", "mpm_ud",
-                                                     "other", "sensor", "valve", "data");
+inline constexpr auto kWords<AnsweredSource> = word_list("no_answer", "none", "unnamed", "mpm", "ud",
+                                                         "mpm_ud", "other", "sensor", "valve", "data");
 
-LoopAnswer loop_answer(const LoopOutcome& said);
+AnsweredSource answered_source(const LoopOutcome& said);
 /// The answer that is this truth.
-LoopAnswer right_answer(ToldSource truth);
+AnsweredSource right_answer(ToldSource truth);
 
 /// The number of loops of each truth (row) with each answer (column): their sum is that of the loops. Bad
 /// tuning is the truth `none`.
 class SourceConfusions {
  public:
-  void add(const FaultTruth& truth, const LoopOutcome& said) { ++at(truth.source(), loop_answer(said)); }
+  void add(const FaultTruth& truth, const LoopOutcome& said) { ++at(truth.source(), answered_source(said)); }
   void add(const SourceConfusions& more);
 
-  std::int64_t of(ToldSource truth, LoopAnswer answer) const;
+  std::int64_t of(ToldSource truth, AnsweredSource answer) const;
   std::int64_t of(ToldSource truth) const;
-  std::int64_t of(LoopAnswer answer) const;
+  std::int64_t of(AnsweredSource answer) const;
   std::int64_t total() const;
 
  private:
-  static constexpr std::size_t kColumns = kWords<LoopAnswer>.size();
+  static constexpr std::size_t kColumns = kWords<AnsweredSource>.size();
 
-  std::int64_t& at(ToldSource truth, LoopAnswer answer) {
+  std::int64_t& at(ToldSource truth, AnsweredSource answer) {
     return counts_[static_cast<std::size_t>(truth)][static_cast<std::size_t>(answer)];
   }
 

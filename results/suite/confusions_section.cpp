@@ -24,13 +24,13 @@ std::vector<Kind> used_by(const Leaderboard& board) {
 }
 
 /// "no answer"
-std::string answer_head(LoopAnswer answer) {
+std::string answer_head(AnsweredSource answer) {
   switch (answer) {
-    case LoopAnswer::no_answer:
+    case AnsweredSource::no_answer:
       return "no answer";
-    case LoopAnswer::none:
+    case AnsweredSource::none:
       return "none (not flagged)";
-    case LoopAnswer::unnamed:
+    case AnsweredSource::unnamed:
       return "flagged, no source";
     default:
       return std::string(to_string(answer));
@@ -38,10 +38,10 @@ std::string answer_head(LoopAnswer answer) {
 }
 
 Table confusions_table(const Leaderboard& board, std::size_t method, const std::vector<ToldSource>& truths,
-                       const std::vector<LoopAnswer>& answers) {
+                       const std::vector<AnsweredSource>& answers) {
   const SourceConfusions& confusions = board.overall[method].confusions;
   std::vector<Table::Column> heads{{"Truth", Table::Align::left}};
-  for (const LoopAnswer answer : answers)
+  for (const AnsweredSource answer : answers)
     heads.push_back({as_label(answer_head(answer))});
   heads.push_back({"loops"});
   Table table(fmt::format("{}: loops by what is true (rows) and by what it answers (columns)",
@@ -49,7 +49,7 @@ Table confusions_table(const Leaderboard& board, std::size_t method, const std::
               std::move(heads));
   for (const ToldSource truth : truths) {
     std::vector<Cell> cells{as_label(std::string(to_string(truth)))};
-    for (const LoopAnswer answer : answers) {
+    for (const AnsweredSource answer : answers) {
       Cell cell = confusions.of(truth, answer);
       if (answer == right_answer(truth))
         cell.tone = Cell::Tone::strong;
@@ -69,7 +69,7 @@ Table confusions_table(const Leaderboard& board, std::size_t method, const std::
 Section confusions_section(const Leaderboard& board) {
   Section section{.id = "confusions", .title = "What is taken for what", .shown = Shown::full};
   const std::vector<ToldSource> truths = used_by<ToldSource>(board);
-  const std::vector<LoopAnswer> answers = used_by<LoopAnswer>(board);
+  const std::vector<AnsweredSource> answers = used_by<AnsweredSource>(board);
   if (truths.empty())
     return section;
   section.say(

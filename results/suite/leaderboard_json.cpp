@@ -47,7 +47,7 @@ SuiteJson confusions_json(const SourceConfusions& confusions) {
   SuiteJson json = SuiteJson::object();
   for (const ToldSource truth : enumerators<ToldSource>())
     if (confusions.of(truth) > 0)
-      for (const LoopAnswer answer : enumerators<LoopAnswer>())
+      for (const AnsweredSource answer : enumerators<AnsweredSource>())
         json[std::string(to_string(truth))][std::string(to_string(answer))] = confusions.of(truth, answer);
   return json;
 }

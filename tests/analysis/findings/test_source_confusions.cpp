@@ -59,16 +59,16 @@ TEST_CASE("confusions: every loop counts once, whatever is true of it and whatev
     const SourceConfusions& found = board.overall[0].confusions;
     CHECK(found.total() == static_cast<std::int64_t>(truths.size()) - 1);
     CHECK(found.total() == board.overall[0]["answered"].total);
-    CHECK(found.of(loop_answer(*said)) == found.total());
+    CHECK(found.of(answered_source(*said)) == found.total());
     all.add(found);
   }
   CHECK(all.total() == static_cast<std::int64_t>(answers.size() * (truths.size() - 1)));
   CHECK(all.of(ToldSource::none) == static_cast<std::int64_t>(2 * answers.size()));  // healthy, badly tuned
-  CHECK(all.of(ToldSource::valve, LoopAnswer::sensor) == 1);
+  CHECK(all.of(ToldSource::valve, AnsweredSource::sensor) == 1);
   CHECK(all.of(ToldSource::sensor, right_answer(ToldSource::sensor)) == 1);
-  CHECK(all.of(ToldSource::mpm, LoopAnswer::no_answer) == 1);
-  CHECK(all.of(ToldSource::mpm, LoopAnswer::none) == 2);  // what it would name does not count
-  CHECK(all.of(ToldSource::mpm, LoopAnswer::unnamed) == 1);
+  CHECK(all.of(ToldSource::mpm, AnsweredSource::no_answer) == 1);
+  CHECK(all.of(ToldSource::mpm, AnsweredSource::none) == 2);  // what it would name does not count
+  CHECK(all.of(ToldSource::mpm, AnsweredSource::unnamed) == 1);
   for (const ToldSource truth : enumerators<ToldSource>())
     CHECK((truth == ToldSource::none ? "none" : to_string(truth)) == to_string(right_answer(truth)));
 }

@@ -111,7 +111,7 @@ TEST_CASE("board file: stated probabilities and told sources are kept, and older
   const Leaderboard board = leaderboard_of(quick(), read_changed(change));
   const PooledScores& mine = board.overall[0];
   CHECK(mine.confusions.total() == mine["answered"].total);
-  CHECK(mine.confusions.of(LoopAnswer::valve) == mine["answered"].total);
+  CHECK(mine.confusions.of(AnsweredSource::valve) == mine["answered"].total);
   CHECK(mine.reliability.count() == mine["answered"].total);
   CHECK(mine.estimates["log_score"].value == Approx(0.5));
   CHECK(mine.estimates["calibration_error"].value == Approx(0.25).margin(0.02));
