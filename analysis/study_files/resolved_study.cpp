@@ -23,7 +23,8 @@ constexpr std::array kLaterKeys{"diagnosis.impact",           "other.valve_start
                                 "other.weights.sensor_stuck", "other.weights.stick_slip",
                                 "other.weights.friction",     "record.sampling",
                                 "record.exception",           "world.valve_curvature",
-                                "world.background.swell",     "assessment.likelihood.judged"};
+                                "world.background.swell",     "assessment.likelihood.judged",
+                                "world.repair_screen",        "assessment.lasso.penalty"};
 
 TomlDraft resolved_draft(const Study& study) {
   TomlDraft draft(key_names(study_file_keys("")));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -10,7 +11,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kFewestPresent = 0.5;  // of the values that a signal has in as many samples elsewhere
+constexpr double kFewestPresent = 0.5;  // of the most values that a signal has in as many samples
 
 /// Sums over the samples of a signal up to each, so that those of a period are differences.
 struct RunningSums {
@@ -42,11 +43,13 @@ struct RunningSums {
     const double n = count(end) - count(first), mean = (sum(end) - sum(first)) / n;
     return (squares(end) - squares(first)) / n - mean * mean;
   }
-  /// log(variance over that of all samples); none: too few values, or it does not vary.
-  std::optional<double> log_ratio(Eigen::Index first, Eigen::Index end) const {
-    const double n = count(end) - count(first),
-                 share = static_cast<double>(end - first) / static_cast<double>(samples());
-    if (n < 2.0 || n < kFewestPresent * share * count(samples()) || !moves_in(first, end))
+  /// The most values in any period of this length.
+  double most_in(Eigen::Index length) const {
+    return (count.tail(count.size() - length) - count.head(count.size() - length)).maxCoeff();
+  }
+  /// log(variance over that of all samples); none: fewer than `fewest` values, or it does not vary.
+  std::optional<double> log_ratio(Eigen::Index first, Eigen::Index end, double fewest) const {
+    if (const double n = count(end) - count(first); n < 2.0 || n < fewest || !moves_in(first, end))
       return std::nullopt;
     const double ratio = variance(first, end) / variance(0, samples());
     return ratio > 0.0 ? std::optional(std::log(ratio)) : std::nullopt;
@@ -72,15 +75,20 @@ std::pair<Eigen::Index, Eigen::Index> quietest_period(const Eigen::Ref<const Eig
     return input.moves_in(0, N) && !input.moves_in(first, end);
   };
   std::pair<Eigen::Index, Eigen::Index> best{0, 0};
+  if (of_signals.empty() || samples < 2 || samples > N)
+    return best;
+  std::vector<double> fewest;
+  for (const RunningSums& signal : of_signals)
+    fewest.push_back(kFewestPresent * signal.most_in(samples));
   double least = kInfinity;
-  for (Eigen::Index first = 0; !of_signals.empty() && samples > 1 && first + samples <= N; ++first) {
+  for (Eigen::Index first = 0; first + samples <= N; ++first) {
     const Eigen::Index end = first + samples;
     if (std::any_of(of_inputs.begin(), of_inputs.end(),
                     [&](const RunningSums& input) { return stands_still(input, first, end); }))
       continue;
     double volume = 0.0;
-    for (const RunningSums& signal : of_signals)
-      volume += signal.log_ratio(first, end).value_or(kInfinity);
+    for (std::size_t i = 0; i < of_signals.size(); ++i)
+      volume += of_signals[i].log_ratio(first, end, fewest[i]).value_or(kInfinity);
     if (volume < least) {
       least = volume;
       best = {first, end};

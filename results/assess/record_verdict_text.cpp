@@ -31,11 +31,12 @@ std::string whole_percent_text(int permille) {
                          : fmt::format("{:.0f} %", permille / 10.0);
 }
 
-/// "12 % (5 to 20 %)"
+/// "12 % (5 to 20 %)", or "12 %" where both ends are that number.
 std::string promise_text(const PromisedGain& promise) {
   const auto percent = [](double share) { return std::lround(100.0 * share); };
-  return fmt::format("{} % ({} to {} %)", percent(promise.gain), percent(promise.lower),
-                     percent(promise.upper));
+  const long gain = percent(promise.gain), lower = percent(promise.lower), upper = percent(promise.upper);
+  return lower == gain && upper == gain ? fmt::format("{} %", gain)
+                                        : fmt::format("{} % ({} to {} %)", gain, lower, upper);
 }
 
 /// Writes one verdict.

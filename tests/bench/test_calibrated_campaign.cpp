@@ -213,7 +213,7 @@ TEST_CASE("comparison: loops that Ipopt runs again give the same bits for any nu
 
 TEST_CASE("blind loops: in worlds each has a benchmark of its plant that no other loop shares") {
   const Study study = changed_study(find_study("wood-berry"),
-                                    {{"simulation.samples", "80"},
+                                    {{"simulation.samples", "160"},
                                      {"simulation.excitation", "\"each\""},
                                      {"experiments", "{mpm = 2, ud = 0, mpm_ud = 0, healthy = 2}"},
                                      {"world.count", "1"},
@@ -237,7 +237,7 @@ TEST_CASE("blind loops: in worlds each has a benchmark of its plant that no othe
   std::vector<AssessedLoop> seen;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const AssessedLoop loop = next_loop(), benchmark = next_benchmark();
-    REQUIRE((loop.samples() == 80 && benchmark.samples() == 80));
+    REQUIRE((loop.samples() == 160 && benchmark.samples() == 160));
     CHECK(benchmark.y == again().y);
     // The plant is that of the world: its gains are 1.2 times those of the model, which y_sim has.
     CHECK(benchmark.y.cwiseProduct(benchmark.y_sim).sum() / benchmark.y_sim.squaredNorm() ==
