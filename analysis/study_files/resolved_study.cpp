@@ -57,14 +57,28 @@ std::string lasting_text(const Study& study) {
   for (const TomlDraft::Line& line : draft.lines())
     if (line.value == line.fallback && std::count(kLaterKeys.begin(), kLaterKeys.end(), line.path) > 0)
       left_out.insert(line.path);
-  std::string text, table;
+  struct Section {  // a table with its heading, or what stands before the first one
+    std::string text;
+    bool has_keys = false, lacks_keys = false;
+  };
+  std::vector<Section> sections(1);
+  std::string table;
   std::istringstream lines(draft.text());
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with('['))
+    if (line.starts_with('[')) {
       table = line.substr(1, line.find(']') - 1) + '.';
-    if (left_out.count(table + line.substr(0, line.find(" = "))) == 0)
-      text += line + '\n';
+      sections.emplace_back().text = line + '\n';
+    } else if (left_out.count(table + line.substr(0, line.find(" = "))) > 0) {
+      sections.back().lacks_keys = true;
+    } else {
+      sections.back().text += line + '\n';
+      sections.back().has_keys = sections.back().has_keys || !line.empty();
+    }
   }
+  std::string text;
+  for (const Section& section : sections)
+    if (section.has_keys || !section.lacks_keys)
+      text += section.text;
   return text;
 }
 

@@ -226,7 +226,7 @@ TEST_CASE("blind loops: in worlds each has a benchmark of its plant that no othe
   RunOptions options = few();
   options.allow_unhealthy_basis = true;
   options.methods = {"sse"};
-  const Campaign campaign = run_serially(study, options);
+  const Campaign campaign = run_campaign(study, options);
   const std::vector<BlindLoop> order = blind_order(campaign, true);
   ShardStore one(ShardIdentity{}), several(ShardIdentity{});
   run_blind_loops(campaign, order, 1, {}, one);
