@@ -142,11 +142,11 @@ class Board(Rated):
         """pandas DataFrame, families x families: Spearman's rank correlation of the methods by a rate; 1: two families
         rank them alike. NaN where fewer than two methods have the rate in both."""
         import pandas
+        if rate not in self.json["rates"]:
+            raise KeyError(f"rate: found '{rate}'; allowed: {', '.join(self.json['rates'])}")
         rates = pandas.DataFrame({family["name"]: {
             method["name"]: method["families"].get(family["name"], {}).get("rates", {}).get(rate, {}).get("value")
             for method in self.json["methods"]} for family in self.json["families"]}, dtype=float)
-        if rates.isna().all(axis=None):
-            raise KeyError(f"rate: found '{rate}'; allowed: {', '.join(self.json['rates'])}")
         return rates.corr(method="spearman")
 
     @property
