@@ -29,7 +29,7 @@ std::string program_options(const TomlTable& table) {
 
 /// The name of an option that is a number.
 std::string threshold_option(const TomlTable& table) {
-  const std::string name = read_text_or(table, "threshold_option", "");
+  std::string name = read_text_or(table, "threshold_option", "");
   const toml::table* const options = table.find("options") ? table.find("options")->as_table() : nullptr;
   if (!name.empty() && (options == nullptr || !(*options)[name].is_number()))
     table.refuse("threshold_option", in_quotes(name), "the name of a number among the options");

@@ -320,7 +320,8 @@ Json signal_json(const Eigen::MatrixXd& signal, SignalForm form) {
     return matrix_json(signal);
   const RowMajorMatrix rows =
       signal.unaryExpr([](double value) { return std::isfinite(value) ? value : kNaN; });
-  return {{"rows", rows.rows()}, {"base64", base64(std::as_bytes(std::span(rows.data(), rows.size())))}};
+  return {{"rows", rows.rows()},
+          {"base64", base64(std::as_bytes(std::span(rows.data(), static_cast<std::size_t>(rows.size()))))}};
 }
 
 /// Those with a scope that an answer can have.

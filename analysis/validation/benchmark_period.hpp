@@ -16,9 +16,9 @@ inline constexpr Eigen::Index kBenchmarkShare = 4;
 ///
 /// m_i the same over all samples, in which each signal has half of the most values that it has in as many
 /// samples and varies, and each input that moves at all moves. Of the simulation errors y - y_sim it is the
-/// logarithm of the volume det(cov e) of Yu and Qin (2.13), which their benchmark index compares, without their
-/// correlations; it does not depend on units, and a disturbance or a mismatch whose MV moves makes it larger.
-/// Nothing says that this period is good: only that no other one of the record is better.
+/// logarithm of the volume det(cov e) of Yu and Qin (2.13), which their benchmark index compares, without
+/// their correlations; it does not depend on units, and a disturbance or a mismatch whose MV moves makes it
+/// larger. Nothing says that this period is good: only that no other one of the record is better.
 ///
 /// First sample and the one after the last; of equal ones the earliest. Equal numbers: there is no such
 /// period, no signal has a value, or the record is shorter.

@@ -20,6 +20,13 @@ std::string percent_text(const Number& number) {
                      100 * number.interval.upper);
 }
 
+/// "A", "A and B", "A, B and C"
+std::string in_a_row(const std::vector<std::string>& words) {
+  const auto last = words.end() - 1;
+  return words.size() < 2 ? words.front()
+                          : fmt::format("{} and {}", fmt::join(words.begin(), last, ", "), *last);
+}
+
 /// "naming the source of a fault: order, 89 % (86 to 90)"; empty where nobody has a number. Methods that
 /// answer on a part of the loops only are not among them.
 std::string best_of(const Leaderboard& board, const BoardColumn& column) {
@@ -34,8 +41,7 @@ std::string best_of(const Leaderboard& board, const BoardColumn& column) {
     most = number;
     best.push_back(strong(as_label(board.methods[method])));
   }
-  return best.empty() ? ""
-                      : fmt::format("{}: {}, {}", column.task, fmt::join(best, " and "), percent_text(most));
+  return best.empty() ? "" : fmt::format("{}: {}, {}", column.task, in_a_row(best), percent_text(most));
 }
 
 /// Who is best at what, in a sentence.
