@@ -167,6 +167,8 @@ def assessed(program, folder, name, kind, seed, trials, has_benchmark):
         repaired = foreign_plant.simulated(plant, fault, number, ROWS, repaired=True)
         promise = {**answer["action"]["gain"], "true": 1 - repaired.objective / loop.objective}
     source = model["source"] if model["answer"] == "fails" else "data" if model["late"] else "nothing"
+    if model["answer"] == "fails" and model["drift"]:  # the loop cannot tell its sensor from a disturbance that grows
+        source = fault.source if fault.source in ("sensor", "disturbance") else "sensor"
     return {**true, "found": answer["found"], "answer": model["answer"], "said": source,
             "named": mismatch and [mismatch[key] for key in ("cv", "mv", "parameter", "size", "lower", "upper")],
             "channel_right": bool(right) if named else None,
