@@ -116,8 +116,9 @@ void check_basis(const Study& study, const QpSolverFactory& factory, BasisCase& 
   basis.explanation =
       basis.healthy ? fmt::format("{} lies within [{}, {}] for every CV; farthest from 1: {} with {:.3f}",
                                   what, options.self_check_lower, options.self_check_upper, name, ivar(worst))
-                    : fmt::format("{} is {:.3f} for {}, outside [{}, {}]: {}", what, ivar(worst), name,
-                                  options.self_check_lower, options.self_check_upper, why);
+      : std::isnan(ivar(worst)) ? fmt::format("{} cannot be computed for {}: {}", what, name, why)
+                                : fmt::format("{} is {:.3f} for {}, outside [{}, {}]: {}", what, ivar(worst),
+                                              name, options.self_check_lower, options.self_check_upper, why);
 }
 
 }  // namespace mpm

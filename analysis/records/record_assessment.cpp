@@ -24,6 +24,7 @@
 #include "analysis/records/record_panel.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/records/verdict_evidence.hpp"
+#include "analysis/statistics/standstill.hpp"
 #include "analysis/study_files/recorded_study.hpp"
 #include "analysis/validation/record_check.hpp"
 #include "base/error.hpp"
@@ -388,6 +389,23 @@ VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessme
   return evidence;
 }
 
+/// Of the CVs that the model does not explain, one that shows a value for so long that chance does not make
+/// it: no other fault leaves such a stretch.
+void add_stuck_sensor(const AssessedLoop& loop, VerdictEvidence& evidence) {
+  constexpr double kNoChance = 1e-6;
+  for (Eigen::Index cv = 0; cv < evidence.model_scores.size(); ++cv) {
+    const Standstill stretch = longest_standstill(loop.y.row(cv));
+    if (!(evidence.model_scores(cv) > evidence.model_threshold) || !is_long(stretch, loop.samples()) ||
+        !(stretch.chance < kNoChance) || (evidence.stuck && stretch.length() <= evidence.stuck->length()))
+      continue;
+    evidence.stuck = stretch;
+    evidence.sensor_cv = cv;
+    evidence.drift = 0.0;
+    evidence.weights = {};
+    evidence.weights[RecordSource::sensor] = 1.0;
+  }
+}
+
 /// What may be the matter with a record that the model does not explain.
 void add_sources(const RecordFrame& frame, RecordAssessment& assessment, VerdictEvidence& evidence) {
   assessment.odds = odds_of(frame, assessment);
@@ -409,6 +427,7 @@ void add_sources(const RecordFrame& frame, RecordAssessment& assessment, Verdict
       evidence.late_cv = alternatives.data_cv;
       evidence.late = alternatives.late;
     }
+    add_stuck_sensor(assessment.loop, evidence);
     return;
   }
   for (const AssessmentRecord* const said : {&assessment.odds, &assessment.said.front()})

@@ -115,6 +115,8 @@ RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::ve
     model.valve_mv = evidence.valve_mv;
   if (model.source == RecordSource::sensor || model.drifts)
     model.sensor_cv = evidence.sensor_cv;
+  if (model.source == RecordSource::sensor)
+    model.stuck = evidence.stuck;
   if (model.source == RecordSource::data && !evidence.late_is_corrected) {
     model.late = evidence.late;
     model.late_cv = evidence.late_cv;

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessment.hpp"
+#include "analysis/statistics/standstill.hpp"
 #include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
 
@@ -143,7 +144,9 @@ struct VerdictEvidence {
   std::vector<CvCost> costs = {};  ///< since the onset where there is one
   /// Posterior of the sources, given that there is one; need not sum to 1.
   OfSources weights = {};
-  double drift = 0.0;                          ///< SourceWeights::drift, of `sensor_cv`
+  double drift = 0.0;  ///< SourceWeights::drift, of `sensor_cv`
+  /// Where `sensor_cv` shows one value that chance does not make: then its sensor has all of the weights.
+  std::optional<Standstill> stuck = {};
   std::optional<NamedMismatch> mismatch = {};  ///< what is wrong with the model
   Eigen::Index valve_mv = -1, sensor_cv = -1;
   Eigen::Index late_cv = -1;  ///< of data; -1: all CVs
@@ -166,6 +169,7 @@ struct RecordVerdict {
     /// The most probable one of a model that fails; of a CV that drifts the more probable one of its two.
     RecordSource source = RecordSource::nothing;
     bool drifts = false;  ///< `sensor_cv` does, by its sensor or by a disturbance: the record cannot tell
+    std::optional<Standstill> stuck = {};  ///< of the source `sensor`: where `sensor_cv` shows one value
     std::optional<NamedMismatch> mismatch = {};   ///< of a source with a mismatch
     Eigen::Index valve_mv = -1, sensor_cv = -1;   ///< of these sources, and of a drift
     Eigen::Index late_cv = -1;                    ///< of data, or where it is corrected; -1: all CVs

@@ -17,7 +17,10 @@ void require_signal(const std::string& name, const Eigen::Ref<const Eigen::Vecto
   }
   for (Eigen::Index k = 0; k < signal.size(); ++k) {
     if (!std::isfinite(signal[k])) {
-      throw InputError(name, fmt::format("{} at sample {}", signal[k], k), "finite values only");
+      throw InputError(name,
+                       std::isnan(signal[k]) ? fmt::format("no value at sample {}", k)
+                                             : fmt::format("{} at sample {}", signal[k], k),
+                       "finite values only");
     }
   }
 }

@@ -11,6 +11,7 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/quantile.hpp"
+#include "analysis/statistics/standstill.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "plants/analyser.hpp"
@@ -20,10 +21,8 @@ namespace {
 
 constexpr double kFarFromZero = 8.0;   // standard deviations
 constexpr double kOftenBeyond = 0.05;  // of the samples
-constexpr double kFrozenShare = 0.1;
-constexpr Eigen::Index kFrozenSamples = 20;
-constexpr double kFarMore = 0.8;   // explained, in the sum over the CVs
-constexpr double kNothing = 0.05;  // explained
+constexpr double kFarMore = 0.8;       // explained, in the sum over the CVs
+constexpr double kNothing = 0.05;      // explained
 constexpr double kRoundingShare = 1e-12;
 
 /// One variable of the record.
@@ -161,15 +160,6 @@ void refuse_twins(const std::vector<RecordedVariable>& variables) {
     }
 }
 
-Eigen::Index longest_standstill(const Eigen::RowVectorXd& values) {
-  Eigen::Index longest = 0, run = 1;
-  for (Eigen::Index k = 1; k < values.size(); ++k) {
-    run = values(k) == values(k - 1) ? run + 1 : 1;
-    longest = std::max(longest, run);
-  }
-  return longest;
-}
-
 void check_values(const RecordedVariable& variable, std::vector<std::string>& warnings) {
   const Eigen::ArrayXd values = variable.present();
   if (variable.is_limited()) {
@@ -182,13 +172,12 @@ void check_values(const RecordedVariable& variable, std::vector<std::string>& wa
                       "(data.scale), operating point or limits differ from those of the study",
                       variable.name, variable.lower, variable.upper, 100.0 * beyond));
   }
-  const Eigen::Index longest = longest_standstill(variable.values);
-  if (variable.is_cv && longest > kFrozenSamples &&
-      static_cast<double>(longest) > kFrozenShare * static_cast<double>(variable.values.size()))
+  const Standstill longest = longest_standstill(variable.values);
+  if (variable.is_cv && is_long(longest, variable.values.size()))
     warnings.push_back(
         fmt::format("{} stays at one value for {} samples: a frozen instrument, or a historian "
                     "that keeps changes only; give its quality, or leave the period out",
-                    variable.name, longest));
+                    variable.name, longest.length()));
 }
 
 /// Does a CV stay away from a level for most of the time, by more than it moves meanwhile?

@@ -199,6 +199,10 @@ Json model_json(const RecordAssessment& of) {
                                 : Json()},
           {"source", to_string(model.source)},
           {"drift", model.drifts && model.sensor_cv >= 0 ? Json(cv_name(of.study, model.sensor_cv)) : Json()},
+          {"stuck", model.stuck ? Json{{"cv", cv_name(of.study, model.sensor_cv)},
+                                       {"from", stamp(model.stuck->first)},
+                                       {"to", stamp(model.stuck->end - 1)}}
+                                : Json()},
           {"mismatch", model.mismatch ? named_json(of.study, *model.mismatch) : Json()},
           {"valve", model.valve_mv < 0 ? Json() : Json(mv_name(of.study, model.valve_mv))},
           {"late", model.late == 0.0

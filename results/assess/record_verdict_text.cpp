@@ -31,12 +31,11 @@ std::string whole_percent_text(int permille) {
                          : fmt::format("{:.0f} %", permille / 10.0);
 }
 
-/// "12 % (5 to 20 %)", or "12 %" where both ends are that number.
+/// "12 % (5 to 20 %)"
 std::string promise_text(const PromisedGain& promise) {
   const auto percent = [](double share) { return std::lround(100.0 * share); };
-  const long gain = percent(promise.gain), lower = percent(promise.lower), upper = percent(promise.upper);
-  return lower == gain && upper == gain ? fmt::format("{} %", gain)
-                                        : fmt::format("{} % ({} to {} %)", gain, lower, upper);
+  return fmt::format("{} % ({} to {} %)", percent(promise.gain), percent(promise.lower),
+                     percent(promise.upper));
 }
 
 /// Writes one verdict.
@@ -93,8 +92,12 @@ class VerdictWriter {
         return mismatch + ", and an unmeasured disturbance is there as well";
       case RecordSource::disturbance:
         return fmt::format("an unmeasured disturbance on {}, and not the model", at);
-      case RecordSource::sensor:
-        return fmt::format("the sensor of {} drifts away", model.sensor_cv < 0 ? at : cv(model.sensor_cv));
+      case RecordSource::sensor: {
+        const std::string sensor = model.sensor_cv < 0 ? at : cv(model.sensor_cv);
+        return model.stuck ? fmt::format("the sensor of {} is stuck: it shows one value from {} to {}",
+                                         sensor, stamp(model.stuck->first), stamp(model.stuck->end - 1))
+                           : fmt::format("the sensor of {} drifts away", sensor);
+      }
       case RecordSource::valve:
         return fmt::format("the valve of {} sticks", mv(model.valve_mv));
       case RecordSource::data:

@@ -98,6 +98,22 @@ def check_drift(bench):
     assert answer["action"]["kind"] in ("sensor", "test"), answer["action"]
 
 
+def check_stuck(bench):
+    """A sensor that shows one value for two thirds of a healthy record is stuck, and the verdict says when."""
+    lines = (bench.folder / "wb-l4.csv").read_text().splitlines()
+    place = lines[0].split(",").index("y.xD")
+    rows = [line.split(",") for line in lines[1:]]
+    for row in rows[60:260]:
+        row[place] = rows[60][place]
+    record = bench.scratch / "stuck.csv"
+    record.write_text("\n".join([lines[0], *(",".join(row) for row in rows)]) + "\n")
+    said = subprocess.run([bench.program, "assess", bench.folder / "wb-dmc.toml", record, "--trials", "0", "--json",
+                           "--quiet", "--jobs", "1"], capture_output=True, text=True, timeout=300, check=True)
+    answer = json.loads(said.stdout)
+    assert answer["model"]["stuck"] == {"cv": "xD", "from": "60", "to": "259"}, answer["verdict"]
+    assert "the sensor of xD is stuck" in answer["verdict"][0] and answer["action"]["kind"] == "sensor", answer["verdict"]
+
+
 def check_averages(bench):
     """CVs that are averages over a row, and their whole record a row early, are a matter of the record's clock."""
     right = bench.assess("half-sample-right", "half-sample-averages")
@@ -125,6 +141,7 @@ def main(program, folder):
         check_mismatch_without_cost(bench)
         check_both(bench)
         check_drift(bench)
+        check_stuck(bench)
         check_averages(bench)
         check_always_something_to_do(bench)
 

@@ -172,9 +172,15 @@ def assessed(program, folder, name, kind, seed, trials, has_benchmark):
     return {**true, "found": answer["found"], "answer": model["answer"], "said": source,
             "named": mismatch and [mismatch[key] for key in ("cv", "mv", "parameter", "size", "lower", "upper")],
             "channel_right": bool(right) if named else None,
-            "covered": bool(mismatch["lower"] <= true["size"] <= mismatch["upper"]) if right else None,
+            "covered": covers(mismatch, true["size"]) if right else None,
             "p": probabilities.get(source), "since": model["since"], "action": answer["action"]["kind"], "promise": promise,
             "controller": answer["controller"]["alike"], "verdict": answer["verdict"][:3]}
+
+
+def covers(mismatch, size):
+    """Is the true size in the interval, which is open at a bound of its search?"""
+    return bool((mismatch["lower"] <= size or mismatch["bound"] == "at most")
+                and (size <= mismatch["upper"] or mismatch["bound"] == "at least"))
 
 
 def share(hits, total):

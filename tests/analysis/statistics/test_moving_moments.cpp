@@ -189,7 +189,7 @@ TEST_CASE("moving moments refuse impossible input") {
   VectorXd bad = signal;
   bad[7] = mpm::kNaN;
   CHECK_THROWS_WITH(mpm::moving_moments(bad, 5, skewness, kurtosis),
-                    "signal: found nan at sample 7; allowed: finite values only");
+                    "signal: found no value at sample 7; allowed: finite values only");
   bad[7] = mpm::kInfinity;
   CHECK_THROWS_AS(mpm::moving_moments(bad, 5, skewness, kurtosis), InputError);
 }

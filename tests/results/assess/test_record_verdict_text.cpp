@@ -68,6 +68,13 @@ class EvidenceDraw {
       of.weights[RecordSource::sensor] = of.drift;
       of.weights[RecordSource::disturbance] += of.drift;
     }
+    if (chance(0.1)) {
+      of.stuck = Standstill{1, 4, 0.0};
+      of.drift = 0.0;
+      of.weights = {};
+      of.weights[RecordSource::sensor] = 1.0;
+      of.sensor_cv = index(cvs_);
+    }
     of.benchmark = {.use = static_cast<BenchmarkUse>(index(3)), .cv = index(cvs_), .is_wanted = chance(0.8)};
     if (chance(0.8) || of.benchmark.use != BenchmarkUse::none) {
       of.benchmark.first = 1;
@@ -260,6 +267,8 @@ void read_benchmark(const RecordVerdictText& text, const std::vector<std::string
                    "a channel of no CV: " + said);
   reading.demand(!(has(text.model, "by its sensor or by") && has(text.action, "Repair")),
                  "a repair of a model that something drifts away from");
+  reading.demand(!has(text.model, "is stuck") || has(text.action, "sensor"),
+                 "a stuck sensor that nobody looks at");
 }
 
 Reading reading_of(const RecordVerdictText& text, const std::vector<std::string>& cvs) {
@@ -292,6 +301,7 @@ TEST_CASE("record verdict: no sentence contradicts another, whatever the evidenc
     ++said[verdict.found()];
     ++said["benchmark " + std::string(to_string(verdict.benchmark.use))];
     said["drift"] += verdict.model.drifts ? 1 : 0;
+    said["stuck"] += verdict.model.stuck ? 1 : 0;
   }
   // Every answer was among them.
   for (const ActionKind kind : enumerators<ActionKind>())
@@ -302,7 +312,7 @@ TEST_CASE("record verdict: no sentence contradicts another, whatever the evidenc
     CHECK(said[found] > 20);
   for (const BenchmarkUse use : enumerators<BenchmarkUse>())
     CHECK(said["benchmark " + std::string(to_string(use))] > 20);
-  CHECK(said["drift"] > 20);
+  CHECK((said["drift"] > 20 && said["stuck"] > 20));
 }
 
 /// The text of a healthy record, with one sentence exchanged.

@@ -176,5 +176,5 @@ TEST_CASE("high-order ARX: what cannot be meant is refused") {
   Eigen::MatrixXd broken = y;
   broken(1, 7) = std::nan("");
   CHECK_THROWS_WITH(identify_high_order_arx(broken, r, of_orders({1})),
-                    Catch::Contains("output 1: found nan at sample 7"));
+                    Catch::Contains("output 1: found no value at sample 7"));
 }

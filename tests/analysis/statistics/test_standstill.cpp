@@ -1,0 +1,43 @@
+#include <cmath>
+
+#include <catch2/catch.hpp>
+
+#include "analysis/statistics/standstill.hpp"
+#include "base/non_finite.hpp"
+#include "tests/analysis/signals.hpp"
+
+namespace mpm {
+
+TEST_CASE("standstill: the longest stretch of one value, over what is missing", "[standstill]") {
+  Eigen::RowVectorXd values(9);
+  values << 1.0, 1.0, 2.0, 2.0, kNaN, 2.0, 3.0, kNaN, 3.0;
+  const Standstill longest = longest_standstill(values);
+  CHECK((longest.first == 2 && longest.end == 6));
+  CHECK(longest.chance == 1.0);  // two of four neighbours outside are equal: 9 (3/6)^2 is above 1
+  values << 1.0, 2.0, 3.0, 4.0, 4.0, 4.0, 4.0, 4.0, 5.0;
+  CHECK(longest_standstill(values).chance == Approx(9.0 * std::pow(1.0 / 6.0, 4)));
+  CHECK(longest_standstill(Eigen::RowVectorXd::Constant(4, kNaN)).length() == 0);
+  CHECK(longest_standstill(Eigen::RowVectorXd::Constant(4, 7.0)).length() == 4);
+}
+
+TEST_CASE("standstill: chance does not freeze noise, also where it is rounded or held", "[standstill]") {
+  const Eigen::Index N = 600;
+  Eigen::RowVectorXd noise = testing::white_noise(N, 3).transpose();
+  const auto is_frozen = [N](const Eigen::RowVectorXd& values) {
+    const Standstill longest = longest_standstill(values);
+    return is_long(longest, N) && longest.chance < 1e-6;
+  };
+  Eigen::RowVectorXd rounded = (noise.array() / 0.5).round() * 0.5, held = noise;
+  for (Eigen::Index k = 0; k < N; ++k)
+    held(k) = noise(k / 80 * 80);  // an analysis every 80 samples
+  CHECK_FALSE(is_frozen(noise));
+  CHECK_FALSE(is_frozen(rounded));
+  CHECK_FALSE(is_frozen(held));
+  rounded.segment(200, 100).setConstant(rounded(200));
+  noise.segment(200, 100).setConstant(noise(200));
+  CHECK(is_frozen(rounded));
+  CHECK(is_frozen(noise));
+  CHECK_FALSE(is_long(longest_standstill(noise.head(250)), 600));
+}
+
+}  // namespace mpm
