@@ -34,8 +34,7 @@ struct LoopSignal {
 const std::vector<LoopSignal>& loop_signals();
 
 /// How the signals of a loop stand in a message: a list for each row, or {"rows": count, "base64": text} of
-/// the numbers row by row, 8 bytes each (IEEE 754, the last byte first), in which NaN is what null is in a
-/// list.
+/// the numbers row by row, 8 bytes each (IEEE 754, little-endian). NaN there is null in a list.
 enum class SignalForm : std::int8_t { lists, base64 };
 
 template <>

@@ -213,8 +213,7 @@ struct RecordVerdict {
 ///   where no CV has a score, or no gain that is wrong by half would show.
 /// - A CV is dearer where its ratio is above its threshold, and above 1.
 /// - P(nothing) is that of simulated records on the same side of the threshold, (healthy + 1) / (all + 2).
-/// The
-///   rest falls on the other sources by their posterior q, held back by c = (right + 1) / (same + 2):
+///   The rest falls on the other sources by their posterior q, held back by c = (right + 1) / (same + 2):
 ///
 ///     P(s) = (1 - P(nothing)) (c q(s) + (1 - c) / 7)
 ///

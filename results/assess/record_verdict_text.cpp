@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "results/assess/repair_form.hpp"
+#include "results/document/document.hpp"
 #include "results/text/experiment_text.hpp"
 #include "scenarios/toml/toml_literal.hpp"
 
@@ -16,13 +17,6 @@ namespace mpm {
 namespace {
 
 using Lines = std::vector<std::string>;
-
-/// "A", "A and B", "A, B and C"
-std::string joined(const Lines& names) {
-  if (names.size() < 2)
-    return names.empty() ? "" : names.front();
-  return fmt::format("{} and {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
-}
 
 /// A probability in whole percent; none is 0 or 100 %.
 std::string whole_percent_text(int permille) {
@@ -164,8 +158,8 @@ class VerdictWriter {
             fmt::format("The model does not explain {}: its noise is {:.2g} times that of the study.",
                         cv(part.cv), part.score));
     if (const Lines names = names_of(model.at, false); !names.empty()) {
-      sentences.push_back(
-          fmt::format("The model no longer explains {}{}. {}: {}.", joined(names), since(), sure(), what()));
+      sentences.push_back(fmt::format("The model no longer explains {}{}. {}: {}.", in_a_row(names), since(),
+                                      sure(), what()));
     }
     sentences.insert(model.at.front().is_noise ? sentences.begin() : sentences.end(), noisy.begin(),
                      noisy.end());
@@ -192,7 +186,7 @@ class VerdictWriter {
     std::string text;
     switch (loop.answer) {
       case LoopAnswer::dearer:
-        text = fmt::format("It costs more than the loop as designed{}: {}.", since(), joined(dearer));
+        text = fmt::format("It costs more than the loop as designed{}: {}.", since(), in_a_row(dearer));
         if (verdict_.model.answer == ModelAnswer::fails && !verdict_.names_dearest())
           text += fmt::format(" {} costs most, but the model explains it.", cv(loop.costs.front().cv));
         break;
@@ -292,7 +286,7 @@ class VerdictWriter {
       worse.push_back(cv(each));
     return fmt::format(
         "Test {} with steps. Do not put it into the controller before: {} would cost more with it.", channel,
-        joined(worse));
+        in_a_row(worse));
   }
 
   std::string wait(const std::string& channel) const {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "results/document/words.hpp"
 #include "results/plot/plot_text.hpp"
@@ -19,6 +20,12 @@ std::string code(std::string_view text) {
 
 std::string link(std::string_view target, std::string_view words) {
   return fmt::format("{}{}{}{}{}", kLink, target, kLinkTarget, words, kLinkEnd);
+}
+
+std::string in_a_row(const std::vector<std::string>& words) {
+  if (words.size() < 2)
+    return words.empty() ? "" : words.front();
+  return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
 }
 
 std::string listed(const std::vector<std::string>& names, std::string_view none) {

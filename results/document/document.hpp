@@ -31,7 +31,9 @@ std::string code(std::string_view text);
 /// `target`: an anchor of the page.
 std::string link(std::string_view target, std::string_view words);
 
-/// "A, B and C" without the "and": the names as foreign text, or `none` where there are none.
+/// "A", "A and B", "A, B and C"; empty for none.
+std::string in_a_row(const std::vector<std::string>& words);
+/// "A, B, C": the names as foreign text, or `none` where there are none.
 std::string listed(const std::vector<std::string>& names, std::string_view none = "");
 
 enum class NumberForm {

@@ -20,13 +20,6 @@ std::string percent_text(const Number& number) {
                      100 * number.interval.upper);
 }
 
-/// "A", "A and B", "A, B and C"
-std::string in_a_row(const std::vector<std::string>& words) {
-  const auto last = words.end() - 1;
-  return words.size() < 2 ? words.front()
-                          : fmt::format("{} and {}", fmt::join(words.begin(), last, ", "), *last);
-}
-
 /// "naming the source of a fault: order, 89 % (86 to 90)"; empty where nobody has a number. Methods that
 /// answer on a part of the loops only are not among them.
 std::string best_of(const Leaderboard& board, const BoardColumn& column) {

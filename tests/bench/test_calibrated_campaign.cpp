@@ -239,7 +239,8 @@ TEST_CASE("blind loops: in worlds each has a benchmark of its plant that no othe
     const AssessedLoop loop = next_loop(), benchmark = next_benchmark();
     REQUIRE((loop.samples() == 160 && benchmark.samples() == 160));
     CHECK(benchmark.y == again().y);
-    // The plant is that of the world: its gains are 1.2 times those of the model, which y_sim has.
+    // The plant is that of the world: its gains are 1.2 times those of the model, which y_sim has. Noise and
+    // its feedback are why it is not exact.
     CHECK(benchmark.y.cwiseProduct(benchmark.y_sim).sum() / benchmark.y_sim.squaredNorm() ==
           Approx(1.2).margin(0.1));
     CHECK(loop.y != benchmark.y);

@@ -37,12 +37,11 @@ struct LassoOptions {
 };
 
 OptionKeys keys(LassoOptions& options) {
-  return {key::choice("penalty", options.penalty, {"chance", "cross-validation"},
-                      "how large lambda is: a channel that explains nothing enters with a probability of 1 % "
-                      "shared out to all "
-                      "channels, and those that stay beside the others are named; or as the paper has it, by "
-                      "cross-validation "
-                      "over five stretches of the record, and all channels that enter are named")};
+  return {key::choice(
+      "penalty", options.penalty, {"chance", "cross-validation"},
+      "how large lambda is: a channel that explains nothing enters with a probability of 1 % shared out to "
+      "all channels, and those that stay beside the others are named; or as the paper has it, by "
+      "cross-validation over five stretches of the record, and all channels that enter are named")};
 }
 
 using Groups = std::vector<Eigen::MatrixXd>;
