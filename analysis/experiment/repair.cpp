@@ -70,11 +70,12 @@ ChannelRepair of_size(const Study& study, const NamedMismatch& named) {
 }  // namespace
 
 ChannelRepair identified_channel(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
-                                 const Channel& channel, const std::optional<MismatchParameter>& only) {
+                                 const Channel& channel, const std::optional<MismatchParameter>& only,
+                                 const FitSurroundings& beside) {
   const Eigen::VectorXd e = (loop.y.row(channel.cv) - loop.y_sim.row(channel.cv)).transpose();
-  const ChannelFit fit =
-      fit_channel(study.assessed_channel(channel.cv, channel.mv), study.controller.sample_time, e,
-                  loop.u.row(channel.mv).transpose(), point.u(channel.mv), study.aggregate.confidence, only);
+  const ChannelFit fit = fit_channel(study.assessed_channel(channel.cv, channel.mv),
+                                     study.controller.sample_time, e, loop.u.row(channel.mv).transpose(),
+                                     point.u(channel.mv), study.aggregate.confidence, only, beside);
   return {.channel = channel,
           .named = {},
           .parameter = only,

@@ -30,7 +30,8 @@ struct ChannelRepair {
 
 /// Identifies a channel again from the record. Throws InputError as fit_channel().
 ChannelRepair identified_channel(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
-                                 const Channel& channel, const std::optional<MismatchParameter>& only = {});
+                                 const Channel& channel, const std::optional<MismatchParameter>& only = {},
+                                 const FitSurroundings& beside = {});
 
 /// The repair that the answer of a method asks for; none where it names no channel, or does not flag the
 /// loop. Throws InputError as fit_channel().

@@ -17,6 +17,7 @@
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/cost_of_record.hpp"
+#include "analysis/records/fitted_repair.hpp"
 #include "analysis/records/held_columns.hpp"
 #include "analysis/records/model_check.hpp"
 #include "analysis/records/model_habit.hpp"
@@ -78,9 +79,12 @@ std::vector<bool> counted_samples(const AssessedLoop& loop) {
 }
 
 /// The channel that the verdict would repair: that of the mismatch that the first method names, or else
-/// `likelihood`, or else the first one that they name at the dearest CV.
+/// `likelihood`, or else the first one that they name at the dearest CV. It is identified again where the
+/// errors that the model has beside it are known by their size.
 std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const AssessedLoop& loop,
-                                       const OperatingPoint& point) {
+                                       const RecordFrame& frame) {
+  const Study& study = assessment.study;
+  const OperatingPoint& point = frame.basis.point;
   const Eigen::Index dearest = assessment.verdict.named_cv();
   const AssessmentRecord* answer = nullptr;
   for (const AssessmentRecord* const said : {&assessment.said.front(), &assessment.odds})
@@ -89,10 +93,17 @@ std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const
   if (answer == nullptr)
     return std::nullopt;
   const std::optional<NamedMismatch> named = answer->named_mismatch();
-  for (Eigen::Index mv = 0; named && named->channel.cv != dearest && mv < assessment.study.mv_count(); ++mv)
+  const auto identified = [&](const Channel& channel, const std::optional<MismatchParameter>& only) {
+    return frame.model_error > 0.0 ? fitted_repair(study, point, assessment.loop, channel, only,
+                                                   frame.model_error, assessment.verdict.model.since)
+                                   : identified_channel(study, point, loop, channel, only);
+  };
+  for (Eigen::Index mv = 0; named && named->channel.cv != dearest && mv < study.mv_count(); ++mv)
     if (answer->names({dearest, mv}))
-      return identified_channel(assessment.study, point, loop, {dearest, mv});
-  return channel_repair(assessment.study, point, loop, *answer);
+      return identified({dearest, mv}, {});
+  if (frame.model_error > 0.0 && (!named || is_fitted_alone(named->parameter)))
+    return identified(*channel_to_repair(*answer), named ? std::optional(named->parameter) : std::nullopt);
+  return channel_repair(study, point, loop, *answer);
 }
 
 /// What the repair says of the channel, as a mismatch: of one that was identified again as a whole its gain,
@@ -123,7 +134,7 @@ void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictE
   const std::vector<bool> counted = counted_samples(loop);
   try {
     std::optional<RepairedChannel> named;
-    if (const auto repair = repair_of(assessment, loop, point)) {
+    if (const auto repair = repair_of(assessment, loop, frame)) {
       evidence.mismatch = mismatch_of(*repair);
       assessment.repair = promised_repair(study, point, loop, *repair, frame.factory, counted);
       assessment.information =

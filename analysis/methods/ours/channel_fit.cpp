@@ -6,11 +6,15 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include <Eigen/Cholesky>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
 
 #include "analysis/identification/autoregression.hpp"
+#include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "base/error.hpp"
@@ -27,67 +31,126 @@ constexpr double kLargestTimeFactor = 8.0;
 /// Steps at which a search ends, as shares of the first ones.
 constexpr double kFinestStep = 1.0 / 1024;
 constexpr int kBisections = 16;
+/// The grid, as shares of the ends of what is possible; a shift below 0: none.
+constexpr std::array kTimesOfGrid{-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75};
+constexpr std::array kShiftsOfGrid{0.0, 0.25, 0.5, 0.75, 1.0, -1.0};
+constexpr std::array kOnsetsOfGrid{0.0, 0.25, 0.5, 0.75, 1.0};
+constexpr std::array kGrowthsOfGrid{0.0, 0.5};
 
-/// The logarithm of the time factor, and the shift of the dead time.
-using Point = std::array<double, 2>;
+/// The logarithm of the time factor, the shift of the dead time, and where the channel begins to be another
+/// and for how many samples it grows.
+using Point = std::array<double, 4>;
+using OfPoint = std::array<bool, 4>;
+enum Number : std::size_t { kOfTime, kOfShift, kOfOnset, kOfGrowth };
 
-/// Which numbers of the channel are looked for; the others are those of the model.
+/// Which numbers are looked for; the others are those of the model.
 struct Freedom {
   bool gain = true;
-  std::array<bool, 2> numbers{true, true};  ///< of a Point
+  OfPoint numbers{true, true, false, false};
 };
 
-Freedom freedom_of(const std::optional<MismatchParameter>& only) {
-  if (only == MismatchParameter::gain)
-    return {true, {false, false}};
-  if (only == MismatchParameter::time_constant)
-    return {false, {true, false}};
-  if (only == MismatchParameter::dead_time)
-    return {false, {false, true}};
-  return {};
+Freedom freedom_of(const std::optional<MismatchParameter>& only, const FitSurroundings& beside) {
+  Freedom freedom;
+  if (only)
+    freedom = {
+        only == MismatchParameter::gain,
+        {only == MismatchParameter::time_constant, only == MismatchParameter::dead_time, false, false}};
+  if (beside.onset) {
+    freedom.numbers[kOfOnset] = beside.onset->latest > beside.onset->earliest;
+    freedom.numbers[kOfGrowth] = beside.onset->longest_growth > 0;
+  }
+  return freedom;
+}
+
+/// Columns about their means, which takes care of a constant.
+Eigen::MatrixXd centred(Eigen::MatrixXd columns) {
+  for (auto column : columns.colwise())
+    column.array() -= column.mean();
+  return columns;
 }
 
 class ChannelSearch {
  public:
   ChannelSearch(const TransferFunction& nominal, double sample_time, const Eigen::VectorXd& e,
-                const Eigen::VectorXd& u, double u_start, const Freedom& freedom)
-      : nominal_(nominal), sample_time_(sample_time), u_(u), u_start_(u_start), freedom_(freedom) {
-    z_ = e + response({0.0, 0.0});
-    whiteness_ = fit_autoregression(z_, 0);
+                const Eigen::VectorXd& u, double u_start, const Freedom& freedom,
+                const FitSurroundings& beside)
+      : nominal_(nominal),
+        sample_time_(sample_time),
+        e_(e),
+        u_(u),
+        u_start_(u_start),
+        freedom_(freedom),
+        Z_(beside.unknown.transpose()) {
     const double record = sample_time * static_cast<double>(u.size());
     const double slowest = std::abs(nominal.residence_time());
-    least_ = {-std::log(kLargestTimeFactor), -nominal.dead_time()};
+    least_ = {-std::log(kLargestTimeFactor), -nominal.dead_time(), -1.0, 0.0};
     largest_ = {std::log(kLargestTimeFactor),
-                std::min(0.25 * record, nominal.dead_time() + slowest + sample_time)};
+                std::min(0.25 * record, nominal.dead_time() + slowest + sample_time), -1.0, 0.0};
+    if (beside.onset) {
+      e_.head(beside.onset->earliest).setConstant(kNaN);
+      least_[kOfOnset] = static_cast<double>(beside.onset->earliest);
+      largest_[kOfOnset] = static_cast<double>(beside.onset->latest);
+      largest_[kOfGrowth] = static_cast<double>(beside.onset->longest_growth);
+    }
+    of_model_ = response(of_model());
+    take(fit_autoregression(e_ + of_model_, 0), deviation_of_steps(e_.transpose()));
   }
 
-  /// Fits the noise to what the channel at `point` leaves.
+  /// The channel as the model has it, where it begins to be another in the middle of what is possible.
+  Point of_model() const { return {0.0, 0.0, 0.5 * (least_[kOfOnset] + largest_[kOfOnset]), 0.0}; }
+
+  /// Fits the noise to what the channel at `point` leaves, and what is unknown beside it.
   void fit_noise(const Point& point) {
-    const Eigen::VectorXd n = z_ - gain_at(point) * response(point);
-    whiteness_ = fit_autoregression(n, autoregression_order(n, kLargestNoiseOrder));
+    const Whitened white = whitened(point);
+    const double gain = gain_of(white);
+    Eigen::VectorXd n = target(point) - gain * part(point).cwiseProduct(response(point));
+    if (Z_.cols() > 0)
+      n -= Z_ * inner_.solve(W_.transpose() * (white.z - gain * white.x).head(W_.rows())) / deviation_;
+    Autoregression noise = fit_autoregression(n, autoregression_order(n, kLargestNoiseOrder));
+    const Eigen::VectorXd w = noise.whitened(n);
+    take(std::move(noise), std::sqrt((w.array() - w.mean()).square().mean()));
   }
 
   /// The best point of a grid and `start`, and what a search finds from there.
   Point best(const Point& start) const {
     Point best = start;
     double least = squares(best, {});
-    for (const double share_f : {-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75})
-      for (const double share_s : {0.0, 0.25, 0.5, 0.75, 1.0, -1.0}) {
-        const Point point{
-            freedom_.numbers[0] ? share_f * largest_[0] : 0.0,
-            share_s < 0.0 || !freedom_.numbers[1] ? 0.0 : least_[1] + share_s * (largest_[1] - least_[1])};
-        if (const double found = squares(point, {}); found < least) {
-          least = found;
-          best = point;
-        }
-      }
-    return searched(best, {}, {true, true});
+    const auto tried = [&](Number number, const auto& all, double otherwise) {
+      return freedom_.numbers[number] ? std::vector<double>(all.begin(), all.end()) : std::vector{otherwise};
+    };
+    const auto within = [&](Number number, double share) {
+      return least_[number] + share * (largest_[number] - least_[number]);
+    };
+    for (const double share_f : tried(kOfTime, kTimesOfGrid, 0.0))
+      for (const double share_s : tried(kOfShift, kShiftsOfGrid, -1.0))
+        for (const double share_o : tried(kOfOnset, kOnsetsOfGrid, 0.5))
+          for (const double share_g : tried(kOfGrowth, kGrowthsOfGrid, 0.0)) {
+            const Point point{share_f * largest_[kOfTime], share_s < 0.0 ? 0.0 : within(kOfShift, share_s),
+                              within(kOfOnset, share_o), within(kOfGrowth, share_g)};
+            if (const double found = squares(point, {}); found < least) {
+              least = found;
+              best = point;
+            }
+          }
+    return searched(best, {}, {true, true, true, true});
+  }
+
+  /// Holds that the channel has been another since the start, unless an onset and a growth explain more by
+  /// the BIC of two further numbers.
+  void prefer_throughout(Point& point) {
+    const Point start =
+        searched({point[kOfTime], point[kOfShift], -1.0, 0.0}, {}, {true, true, false, false});
+    const auto samples = static_cast<double>(whiteness_.rows.size());
+    if (samples * std::log(squares(start, {}) / squares(point, {})) > 2.0 * std::log(samples))
+      return;
+    freedom_.numbers[kOfOnset] = freedom_.numbers[kOfGrowth] = false;
+    point = start;
   }
 
   double gain_at(const Point& point) const { return gain_of(whitened(point)); }
 
   /// The sum of squares of the model without any change.
-  double squares_of_model() const { return squares({0.0, 0.0}, 1.0); }
+  double squares_of_model() const { return squares(of_model(), 1.0); }
 
   /// The least sum of squares at a point, with this factor of the gain or with the best one.
   double squares(const Point& point, std::optional<double> gain) const {
@@ -96,8 +159,10 @@ class ChannelSearch {
   }
 
   /// A pattern search (Hooke and Jeeves 1961) from `start` over those numbers that are free.
-  Point searched(Point point, std::optional<double> gain, const std::array<bool, 2>& is_free) const {
-    Point step{0.125 * largest_[0], 0.125 * (largest_[1] - least_[1])};
+  Point searched(Point point, std::optional<double> gain, const OfPoint& is_free) const {
+    Point step{0.125 * largest_[kOfTime], 0.0, 0.0, 0.0};
+    for (const std::size_t number : {kOfShift, kOfOnset, kOfGrowth})
+      step[number] = 0.125 * (largest_[number] - least_[number]);
     double least = squares(point, gain);
     for (double share = 1.0; share >= kFinestStep;) {
       bool better = false;
@@ -133,30 +198,62 @@ class ChannelSearch {
     return freedom_.gain ? white.x.dot(white.z) / white.x.squaredNorm() : 1.0;
   }
 
+  void take(Autoregression noise, double deviation) {
+    whiteness_ = std::move(noise);
+    deviation_ = deviation;
+    if (Z_.cols() == 0)
+      return;
+    W_ = centred(whiteness_.whitened(Z_)) / deviation;
+    inner_.compute(W_.transpose() * W_ + Eigen::MatrixXd::Identity(W_.cols(), W_.cols()));
+  }
+
+  /// Of the channel that has gone over, r.
+  Eigen::VectorXd part(const Point& point) const {
+    Eigen::VectorXd part(u_.size());
+    for (Eigen::Index k = 0; k < part.size(); ++k)
+      part(k) =
+          std::clamp((static_cast<double>(k) - point[kOfOnset]) / std::max(point[kOfGrowth], 1.0), 0.0, 1.0);
+    return part;
+  }
+
+  /// e + r (G0 u)
+  Eigen::VectorXd target(const Point& point) const { return e_ + part(point).cwiseProduct(of_model_); }
+
   Eigen::VectorXd response(const Point& point) const {
     const TransferFunction channel =
-        nominal_.with_time_scaled(std::exp(point[0])).with_dead_time_shifted(point[1]);
+        nominal_.with_time_scaled(std::exp(point[kOfTime])).with_dead_time_shifted(point[kOfShift]);
     return simulated_output(TransferMatrix{{channel}}, sample_time_, Eigen::VectorXd::Constant(1, u_start_),
                             u_.transpose(), Eigen::MatrixXd(0, u_.size()))
         .row(0);
   }
 
-  /// Both sides behind A(q), about their means, which takes care of c.
+  /// Both sides behind A(q), about their means, and without what is unknown: products of
+  /// w - W (I + W'W)^-1 W'w, below it -(I + W'W)^-1 W'w, are those under I + W W'.
   Whitened whitened(const Point& point) const {
-    Eigen::MatrixXd both(z_.size(), 2);
-    both << z_, response(point);
-    const Eigen::MatrixXd white = whiteness_.whitened(both);
-    return {white.col(0).array() - white.col(0).mean(), white.col(1).array() - white.col(1).mean()};
+    Eigen::MatrixXd both(u_.size(), 2);
+    both << target(point), part(point).cwiseProduct(response(point));
+    Eigen::MatrixXd white = centred(whiteness_.whitened(both));
+    if (Z_.cols() == 0)
+      return {white.col(0), white.col(1)};
+    const Eigen::MatrixXd coefficients = inner_.solve(W_.transpose() * white);
+    Eigen::MatrixXd left(white.rows() + W_.cols(), 2);
+    left << white - W_ * coefficients, -coefficients;
+    return {left.col(0), left.col(1)};
   }
 
   const TransferFunction& nominal_;
   double sample_time_;
+  Eigen::VectorXd e_;
   const Eigen::VectorXd& u_;
   double u_start_;
   Freedom freedom_;
-  Eigen::VectorXd z_;
-  Point least_, largest_;
+  Eigen::MatrixXd Z_;         ///< N x q
+  Eigen::VectorXd of_model_;  ///< G0 u
+  Point least_{}, largest_{};
   Autoregression whiteness_;
+  double deviation_ = 1.0;             ///< of w
+  Eigen::MatrixXd W_;                  ///< Z behind A(q), about its mean, in deviations of w
+  Eigen::LLT<Eigen::MatrixXd> inner_;  ///< I + W' W
 };
 
 /// The end of an interval: between `inside`, where `excess` is not above 0, and `bound`; the bound where it
@@ -189,35 +286,40 @@ bool is_fitted_alone(MismatchParameter parameter) {
 
 ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
                        const Eigen::Ref<const Eigen::VectorXd>& e, const Eigen::Ref<const Eigen::VectorXd>& u,
-                       double u_start, double confidence, const std::optional<MismatchParameter>& only) {
+                       double u_start, double confidence, const std::optional<MismatchParameter>& only,
+                       const FitSurroundings& beside) {
   require_confidence(confidence);
   if (nominal.is_zero())
     throw InputError("channel", "one that is zero in the model", "a channel of the model");
   if ((u.array() == u(0)).all())
     throw InputError("MV of the channel", "one that does not move", "an MV that moves");
   const Eigen::VectorXd errors = e, moves = u;
-  const Freedom freedom = freedom_of(only);
-  ChannelSearch search(nominal, sample_time, errors, moves, u_start, freedom);
+  const Freedom freedom = freedom_of(only, beside);
+  ChannelSearch search(nominal, sample_time, errors, moves, u_start, freedom, beside);
   // First as if the noise were white: an autoregression of all that the model leaves would take the mismatch
   // for noise, and the search would end where that is nearly true.
-  Point point = search.best({0.0, 0.0});
+  Point point = search.best(search.of_model());
   for (int round = 0; round < kNoiseRounds; ++round) {
     search.fit_noise(point);
     point = search.best(point);
   }
+  if (beside.onset && beside.onset->earliest == 0)
+    search.prefer_throughout(point);
   const double gain = search.gain_at(point);
   const double least = search.squares(point, gain);
   const auto samples = static_cast<double>(search.whiteness().rows.size());
   const double limit = boost::math::quantile(boost::math::chi_squared_distribution<>(1.0), confidence);
   const auto excess = [&](double squares) { return samples * std::log(squares / least) - limit; };
   const auto of_gain = [&](double value) {
-    return excess(search.squares(search.searched(point, value, {true, true}), value));
+    return excess(search.squares(search.searched(point, value, {true, true, true, true}), value));
   };
   const auto of_number = [&](std::size_t number) {
     return [&, number](double value) {
       Point fixed = point;
       fixed[number] = value;
-      return excess(search.squares(search.searched(fixed, {}, {number != 0, number != 1}), {}));
+      OfPoint others{true, true, true, true};
+      others[number] = false;
+      return excess(search.squares(search.searched(fixed, {}, others), {}));
     };
   };
   const auto end = [&](std::size_t number, double bound) {

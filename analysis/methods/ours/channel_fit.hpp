@@ -30,23 +30,38 @@ struct ChannelFit {
 /// time.
 bool is_fitted_alone(MismatchParameter parameter);
 
+/// What is known of a record beside the channel that is identified.
+struct FitSurroundings {
+  /// q x N, CV unit: what e may have of other causes, each row with a coefficient of its own ~ N(0, 1).
+  Eigen::MatrixXd unknown = {};
+  /// The samples between which the channel begins to be another; it may take `longest_growth` samples until
+  /// it is whole. Nothing before `earliest` is fitted. From sample 0 on it may also be so throughout. None:
+  /// it is.
+  struct Onset {
+    Eigen::Index earliest, latest, longest_growth;
+  };
+  std::optional<Onset> onset = {};
+};
+
 /// Identifies the channel G of one CV again. With G0 its model, e the simulation error of the CV and u the
 /// MV,
 ///
-///   e(k) + (G0 u)(k) = g (G(f, s) u)(k) + c + n(k),   A(q) n(k) = w(k)
+///   e(k) + r(k) (G0 u)(k) = r(k) g (G(f, s) u)(k) + (Z' z)(k) + c + n(k),   A(q) n(k) = w(k),   z ~ N(0, I)
 ///
 /// G(f, s) is G0 with its time constants times f and its dead time longer by s, g the factor of its gain, and
 /// A the autoregression of n whose order has the least BIC: an output-error model of one channel with
-/// coloured noise, which an unmeasured disturbance is. g and c are the least-squares values for each (f, s),
-/// f and s are found by a grid and a pattern search, A and the rest in turn. The interval of a parameter is
-/// that of its profile likelihood: the values with n ln(V / V_min) <= chi^2_1, V the least sum of squares
-/// over all others.
+/// coloured noise, which an unmeasured disturbance is. Z is what is unknown beside it, and r the part of the
+/// channel that has gone over: 1, or 0 before an onset and 1 after the growth, a line between. g and c are
+/// the least-squares values for each (f, s, r), z is integrated out; f, s and r are found by a grid and a
+/// pattern search, A and the rest in turn. The interval of a parameter is that of its profile likelihood: the
+/// values with n ln(V / V_min) <= chi^2_1, V the least sum of squares over all others.
 ///
 /// | symbol | name    | shape | unit        |
 /// |--------|---------|-------|-------------|
 /// | e      | e       | N     | CV; NaN where a sample is missing |
 /// | u      | u       | N     | MV, u(k) acts from sample k on    |
 /// |        | u_start | 1     | MV, at rest before the record     |
+/// | Z      | unknown | q x N | CV                                |
 ///
 /// f is looked for in 1/8 ... 8, and s from -dead time to the dead time and residence time of G0 together, or
 /// a quarter of the record; an interval ends there, and a value there is a bound, but for a dead time of 0.
@@ -56,6 +71,7 @@ bool is_fitted_alone(MismatchParameter parameter);
 /// that is zero, an MV that does not move, and a record with too few samples for the fit.
 ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
                        const Eigen::Ref<const Eigen::VectorXd>& e, const Eigen::Ref<const Eigen::VectorXd>& u,
-                       double u_start, double confidence, const std::optional<MismatchParameter>& only = {});
+                       double u_start, double confidence, const std::optional<MismatchParameter>& only = {},
+                       const FitSurroundings& beside = {});
 
 }  // namespace mpm

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <catch2/catch.hpp>
@@ -137,6 +138,57 @@ TEST_CASE("channel fit: a value at the end of its search is a bound") {
   CHECK(fitted(modelled_channel().with_time_scaled(2.0)).time_factor.bound == SizeBound::none);
   // No dead time can be shorter than none.
   CHECK(fitted(modelled_channel().with_dead_time_shifted(-10.0)).dead_time_shift.bound == SizeBound::none);
+}
+
+TEST_CASE("channel fit: what other channels may have wrong is in its interval") {
+  constexpr int kLoops = 40;
+  constexpr double kError = 0.1;
+  const TransferFunction other = TransferFunction::first_order(2.0, 25.0, 4.0);
+  int beside = 0, alone = 0;
+  for (int loop = 0; loop < kLoops; ++loop) {
+    RandomStream stream(10, loop, StreamId::measurement_noise);
+    const Eigen::VectorXd u = moving_mv(stream), v = moving_mv(stream);
+    const Eigen::VectorXd response = response_of(other, v);
+    const Eigen::VectorXd e = error_of(modelled_channel().with_gain_scaled(0.7), u, 0.02, 0.0, stream) +
+                              kError * stream.normal() * response;
+    const auto holds = [&](const FitSurroundings& known) {
+      const FittedNumber gain =
+          fit_channel(modelled_channel(), kTs, e, u, 3.0, 0.9, MismatchParameter::gain, known).gain_factor;
+      return gain.lower <= 0.7 && 0.7 <= gain.upper ? 1 : 0;
+    };
+    beside += holds({.unknown = kError * response.transpose()});
+    alone += holds({});
+  }
+  INFO(beside << " and " << alone << " of " << kLoops);
+  CHECK(beside >= 31);  // P(B(40, 0.9) < 31) = 0.005
+  CHECK(alone < 31);
+}
+
+TEST_CASE("channel fit: a channel that goes over within the record has the size that it has in the end") {
+  constexpr int kLoops = 30;
+  constexpr Eigen::Index kBegins = 120, kGrows = 60;
+  int held = 0, throughout = 0;
+  for (int loop = 0; loop < kLoops; ++loop) {
+    RandomStream stream(11, loop, StreamId::measurement_noise);
+    const Eigen::VectorXd u = moving_mv(stream);
+    Eigen::VectorXd e = error_of(modelled_channel().with_time_scaled(2.0), u, 0.0, 0.0, stream);
+    const bool begins = loop % 2 == 0;
+    for (Eigen::Index k = 0; k < kFitted; ++k)
+      e(k) = (begins ? std::clamp(static_cast<double>(k - kBegins) / kGrows, 0.0, 1.0) : 1.0) * e(k) +
+             0.1 * stream.normal();
+    const auto fitted = [&](const FitSurroundings& known) {
+      return fit_channel(modelled_channel(), kTs, e, u, 3.0, 0.9, MismatchParameter::time_constant, known)
+          .time_factor;
+    };
+    const FittedNumber anywhere =
+        fitted({.onset = FitSurroundings::Onset{0, kFitted - kFitted / 5, kFitted / 3}});
+    held += anywhere.lower <= 2.0 && 2.0 <= anywhere.upper ? 1 : 0;
+    if (begins)
+      throughout += fitted({}).upper < 2.0 ? 1 : 0;
+  }
+  INFO(held << " and " << throughout << " of " << kLoops);
+  CHECK(held >= 22);                // P(B(30, 0.9) < 22) = 0.002
+  CHECK(throughout == kLoops / 2);  // who takes it for all of the record finds less
 }
 
 }  // namespace mpm

@@ -1,0 +1,71 @@
+#include "analysis/records/fitted_repair.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "analysis/methods/ours/base_noise.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
+#include "analysis/records/untold_part.hpp"
+#include "base/non_finite.hpp"
+
+namespace mpm {
+namespace {
+
+/// An onset is looked for as far beside its interval as that is long, and a growth over a part of the record.
+constexpr Eigen::Index kLeastRoom = 5;
+constexpr Eigen::Index kGrowingPart = 3;
+/// Of what no record can tell, in deviations of the noise: y_sim has most of it.
+constexpr double kUntold = 30.0;
+
+FitSurroundings::Onset onset_range(const FaultOnset& since, Eigen::Index samples) {
+  const Eigen::Index room = std::max(kLeastRoom, since.latest - since.earliest);
+  return {std::max<Eigen::Index>(0, since.earliest - room), std::min(samples - 1, since.latest + room),
+          samples / kGrowingPart};
+}
+
+/// Nobody could tell since when: perhaps since the start. A fifth of the record is the least to see a channel
+/// in.
+FitSurroundings::Onset anywhere(Eigen::Index samples) {
+  return {0, samples - samples / 5, samples / kGrowingPart};
+}
+
+double size_of(const ChannelRepair& repair, MismatchParameter parameter) {
+  return parameter == MismatchParameter::gain            ? repair.gain_factor.value
+         : parameter == MismatchParameter::time_constant ? repair.time_factor.value
+                                                         : repair.dead_time_shift.value;
+}
+
+}  // namespace
+
+ChannelRepair fitted_repair(const Study& study, const OperatingPoint& point, const AssessedLoop& loop,
+                            const Channel& channel, const std::optional<MismatchParameter>& only,
+                            double delta, const std::optional<FaultOnset>& since) {
+  ModelErrorPrior prior = relative_errors(study, channel.cv, delta, 0.0);
+  std::erase_if(prior.channels, [&](const ChannelError& error) {
+    return error.input == channel.mv && (!only || error.parameter == *only);
+  });
+  const Eigen::MatrixXd inputs = model_inputs(loop.from_start());
+  const Eigen::VectorXd initial = inputs.col(0);  // what moved the model before the record is not known
+  const ModelErrors errors(study, channel.cv, prior, Eigen::RowVectorXd::Constant(1, kNaN),
+                           Eigen::MatrixXd::Zero(inputs.rows(), 1), initial, 1.0, BaseNoise{1.0});
+  const Eigen::RowVectorXd e = loop.y.row(channel.cv) - loop.y_sim.row(channel.cv);
+  const Eigen::MatrixXd untold = untold_columns(
+      study, channel.cv, starts_after_unknown(loop.y, slowest_settling(study)), loop.samples());
+  const Eigen::MatrixXd nominal = errors.slopes(inputs, initial);
+  FitSurroundings beside{.onset = since ? onset_range(*since, loop.samples()) : anywhere(loop.samples())};
+  const auto fitted_beside = [&](const Eigen::MatrixXd& slopes) {
+    beside.unknown.resize(slopes.rows() + untold.cols() - 1, loop.samples());
+    beside.unknown << slopes.middleCols(loop.first, loop.samples()),
+        kUntold * deviation_of_steps(e) *
+            untold.rightCols(untold.cols() - 1).transpose();  // a constant is free
+    return identified_channel(study, point, loop, channel, only, beside);
+  };
+  const ChannelRepair first = fitted_beside(nominal);
+  if (!only)
+    return first;
+  // The other parameters of the channel act as it is, and not as the model has it.
+  return fitted_beside(
+      errors.slopes(nominal, {0, channel.mv, *only, size_of(first, *only)}, inputs, initial));
+}
+
+}  // namespace mpm
