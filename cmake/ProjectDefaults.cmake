@@ -17,19 +17,19 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # Most of the time of a build goes into reading headers and instantiating Eigen. Sources that are compiled as one
 # share that: 24 at a time take a third of the compiler's time away that 12 take, which take half of that of single ones.
 # The price is that a change compiles its neighbours too, so the preset debug compiles each source by itself, and up to
-# 2.5 GB of memory for a compiler, of which no more run at once than find that much. gcc's garbage collector looks
-# through all that several times, a tenth of the compiler's time, unless it waits until there is more.
+# 2 GB of memory for a compiler, of which no more run at once than find that much. gcc's garbage collector looks through
+# all that several times, a tenth of the compiler's time, unless it waits: until there are 1.5 GB, and half as much again.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 24 CACHE STRING "Sources that are compiled as one, with CMAKE_UNITY_BUILD")
 if(CMAKE_UNITY_BUILD)
   cmake_host_system_information(RESULT memory QUERY TOTAL_PHYSICAL_MEMORY)  # MiB
-  math(EXPR compilers "(${memory} + 1279) / 2560")
+  math(EXPR compilers "(${memory} + 1023) / 2048")
   if(compilers LESS 1)
     set(compilers 1)
   endif()
   set_property(GLOBAL APPEND PROPERTY JOB_POOLS compile=${compilers})
   set(CMAKE_JOB_POOL_COMPILE compile)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-    add_compile_options(--param=ggc-min-heapsize=2000000)  # kB
+    add_compile_options(--param=ggc-min-heapsize=1000000 --param=ggc-min-expand=50)  # kB, %
   endif()
 endif()
 
