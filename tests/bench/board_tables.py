@@ -19,7 +19,7 @@ import sys
 ORIGINS = {"mpmbench": "ours", "likelihood": "ours", "order": "ours", "counterfactual": "ours", "excitation": "ours",
            "variance-ratio": "the baseline", "sse": "simulation error", "botelho": "the thesis",
            "badwe2009": "Badwe et al. (2009)", "badwe2010": "Badwe et al. (2010)", "yu-qin": "Yu and Qin (2008)",
-           "sun": "Sun et al. (2013)"}
+           "sun": "Sun et al. (2013)", "sse+lasso": "two methods as one"}
 REFERENCE = "ceiling"
 LEARNED = "docs/learned.json"
 
@@ -90,13 +90,18 @@ def ranking(board):
     """Methods by the source of the faults with an impact, at equal false alarms; then by the gain of repairs."""
     methods = {method["name"]: method for method in board["methods"]}
     heads, cells = columns(board, [
-        ("source_05_impact", ["all", "exact", "errors", "worlds", "mixed"]),
-        ("repair_gain_share_05", ["all", "exact", "errors", "worlds", "mixed"]),
+        ("source_05_impact", ["all", "exact", "worlds", "mixed"]),
+        ("repair_gain_share_05", ["all", "exact", "worlds", "mixed"]),
         ("false_alarm_calibrated", ["all"])],
         {"source_05_impact": "names none", "repair_gain_share_05": "names none"})
     return table(["method", "rank by source", "rank by repair", *heads], [
         [f"`{entry['method']}`", rank(entry, "source_05_impact"), rank(entry, "repair_gain_share_05"),
          *(cell(methods[entry["method"]]) for cell in cells)] for entry in board["ranking"]])
+
+
+def is_variant(name):
+    """A method with the correction that it lacks otherwise, or without the one that it has."""
+    return ":" in name
 
 
 def questions(board):
@@ -108,20 +113,65 @@ def questions(board):
     methods = {method["name"]: method for method in board["methods"]}
     return table(["method", *(board["headings"][rate] for rate in board["questions"])], [
         [f"`{entry['method']}`", *(cell(methods[entry["method"]], rate) for rate in board["questions"])]
-        for entry in board["ranking"]])
+        for entry in board["ranking"] if not is_variant(entry["method"])])
 
 
-def detection(board):
-    """What methods flag, and what of it is right at their own thresholds."""
-    heads, cells = columns(board, [
-        ("false_alarm_healthy", ["exact", "worlds"]),
-        ("power_05_impact", ["exact", "errors", "worlds", "inputs", "growing", "mixed"]),
-        ("power_05", ["drift"]),
-        ("source_all", ["exact", "errors", "worlds", "mixed"])],
-        {"source_all": "names none"})
-    return table(["method", *heads], [
-        [f"`{method['name']}`" if method["name"] != REFERENCE else "reference", *(cell(method) for cell in cells)]
-        for method in board["methods"]])
+def by_family(board, rate, silent="-"):
+    """A rate of each method in every family in whole percents, and over all of them with its interval."""
+    families = [family["name"] for family in board["families"]]
+
+    def share(scores):
+        found = numbers(scores).get(rate)
+        return marked(f"{100 * found['value']:.0f}", scores) if counted(found) else silent
+
+    return table(["method", *(f"`{family}`" for family in families), "all"], [
+        [f"`{method['name']}`" if method["name"] != REFERENCE else "reference",
+         *(share(method["families"][family]) for family in families),
+         marked(percents(numbers(method["all"]).get(rate)), method["all"]) or silent]
+        for method in board["methods"] if not is_variant(method["name"])])
+
+
+def stated(board):
+    """Scores of the probabilities that methods state, and those of a forecast that sees no record."""
+    forecast = board["forecast"]
+
+    def row(method):
+        found = method["all"]["estimates"]
+        return [f"`{method['name']}`", *("{:.3f} ({:.3f} to {:.3f})".format(*(found[score][key] for key in SHARE))
+                                         for score in ("log_score", "brier_score")),
+                f"{found['calibration_error']['value']:.3f}",
+                *(f"{forecast['skill'][method['name']][score]:.2f}" for score in ("log_score", "brier_score"))]
+
+    return table(["method", "logarithmic score", "Brier score", "calibration error", "skill, logarithmic", "skill, Brier"],
+                 [*(row(method) for method in board["methods"] if method["name"] in forecast["skill"]),
+                  ["frequencies of the suite", f"{forecast['log_score']:.3f}", f"{forecast['brier_score']:.3f}", "", "0", "0"]])
+
+
+def confusions(board, method):
+    """Numbers of loops: what is true, and what the method answers at its own threshold."""
+    (found,) = (each["all"]["confusions"] for each in board["methods"] if each["name"] == method)
+    answers = [answer for answer in next(iter(found.values())) if any(row[answer] for row in found.values())]
+    words = {"no_answer": "no answer", "none": "not flagged", "unnamed": "no source"}
+    return table(["truth", *(words.get(answer, f"`{answer}`") for answer in answers), "loops"], [
+        [f"`{truth}`", *(str(row[answer]) for answer in answers), str(sum(row.values()))]
+        for truth, row in found.items() if any(row.values())])
+
+
+def information(board):
+    """What the correction by the benchmark brings to each method that is there in both ways, on the same loops."""
+    rates = list(dict.fromkeys(each["rate"] for each in board["information"]))
+    found = {(each["method"], each["rate"]): each for each in board["information"]}
+
+    def cells(method, rate):
+        each = found.get((method, rate))
+        if not each:
+            return ["-", "-", "-"]
+        return [f"{100 * each['without']:.0f}", f"{100 * each['with']:.0f}",
+                "{:+.0f} ({:+.0f} to {:+.0f})".format(*(100 * each[key] for key in ("difference", "lower", "upper")))]
+
+    return table(["method", *(f"{board['headings'][rate]}, {how}" for rate in rates for how in ("without", "with", "difference"))], [
+        [f"`{method}`", *(cell for rate in rates for cell in cells(method, rate))]
+        for method in dict.fromkeys(each["method"] for each in board["information"])])
 
 
 def readme(board, titles):
@@ -133,7 +183,7 @@ def readme(board, titles):
         {"source_05_impact": "names none", "repair_gain_share_05": "names none"})
     return table(["method", *(head.removesuffix(": all") for head in heads)], [
         [f"`{entry['method']}`, {ORIGINS.get(entry['method']) or titles[entry['method']]}", *(cell(methods[entry["method"]]) for cell in cells)]
-        for entry in board["ranking"]])
+        for entry in board["ranking"] if not is_variant(entry["method"])])
 
 
 def curve(board, cells):
@@ -176,6 +226,14 @@ def exact(board):
 
     return table(["method", *(f"`{name}`" for name in families), "healthy, flagged", "with an impact, at 5 %"],
                  [row(method) for method in board["methods"]])
+
+
+def sizes(board):
+    """Channels, parameters and sizes that methods name, over all families."""
+    heads, cells = columns(board, [(rate, ["all"]) for rate in ("channel_impact", "parameter_impact", "size_covered")], {})
+    rows = [[f"`{method['name']}`", *(cell(method) for cell in cells)] for method in board["methods"]
+            if method["name"] != REFERENCE and counted(method["all"]["rates"]["channel_impact"])]
+    return table(["method", *(head.removesuffix(": all") for head in heads)], rows)
 
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"
@@ -234,10 +292,11 @@ def worlds(board):
 def learnt(sources):
     """Sources of all faults, with an impact or without, where the errors of the model are learnt."""
     kinds = {"mpm": "mismatch named", "ud": "disturbance named", "mpm_ud": "both named", "other": "other named"}
+    families = "worlds", "mixed", "shapes", "several", "onset", "instruments", "valves"
     counts = {}
     for method in ("likelihood", "mpmbench"):
         for plant, family, kind, _, flagged, told in loops(sources, "standard", method):
-            if family in ("worlds", "inputs", "growing", "mixed"):
+            if family in families:
                 place = "on `tank`" if plant == "tank" else f"`{family}`"
                 counts.setdefault((place, method), {}).setdefault(kind, []).append(flagged if kind == "healthy" else told)
 
@@ -247,7 +306,7 @@ def learnt(sources):
     return table(["family", "method", "healthy, flagged", *kinds.values()], [
         [place if method == "likelihood" else "", f"`{method}`",
          *(count(counts[place, method].get(kind)) for kind in ("healthy", *kinds))]
-        for place in ("`worlds`", "`inputs`", "`growing`", "`mixed`", "on `tank`") for method in ("likelihood", "mpmbench")])
+        for place in (*(f"`{family}`" for family in families), "on `tank`") for method in ("likelihood", "mpmbench")])
 
 
 def finished(program, suite):
@@ -262,12 +321,17 @@ def pages(program, sources):
     standard, exact_board = finished(program, "standard"), finished(program, "exact")
     cells = json.loads((sources / LEARNED).read_text())
     tables = {"README.md": {"standard": readme(standard, titles)},
-              "docs/suite.md": {"detection": detection(standard), "ranking": ranking(standard), "questions": questions(standard),
+              "docs/suite.md": {"ranking": ranking(standard), "questions": questions(standard), "information": information(standard),
+                                "stated": stated(standard), "confusions": confusions(standard, "mpmbench"),
+                                "healthy": by_family(standard, "false_alarm_healthy"),
+                                "found": by_family(standard, "power_05_impact"),
+                                "sources": by_family(standard, "source_05_impact"),
                                 "curve": curve(standard, cells),
                                 "learned": learned(cells)},
               "docs/methods.md": {"worlds": worlds(standard), "hard": hard_families(sources, exact_board)},
               "docs/methods_own.md": {"learnt": learnt(sources)},
-              "docs/suite_exact.md": {"exact": exact(exact_board)}}
+              "docs/suite_exact.md": {"exact": exact(exact_board), "exact-sources": by_family(exact_board, "source_all"),
+                                      "exact-sizes": sizes(exact_board)}}
     return {sources / name: with_tables((sources / name).read_text(encoding="utf-8"), of_page)
             for name, of_page in tables.items()}
 
