@@ -113,7 +113,7 @@ def questions(board):
     methods = {method["name"]: method for method in board["methods"]}
     return table(["method", *(board["headings"][rate] for rate in board["questions"])], [
         [f"`{entry['method']}`", *(cell(methods[entry["method"]], rate) for rate in board["questions"])]
-        for entry in board["ranking"] if not is_variant(entry["method"])])
+        for entry in board["ranking"]])
 
 
 def by_family(board, rate, silent="-"):
@@ -169,7 +169,8 @@ def information(board):
         return [f"{100 * each['without']:.0f}", f"{100 * each['with']:.0f}",
                 "{:+.0f} ({:+.0f} to {:+.0f})".format(*(100 * each[key] for key in ("difference", "lower", "upper")))]
 
-    return table(["method", *(f"{board['headings'][rate]}, {how}" for rate in rates for how in ("without", "with", "difference"))], [
+    heads = [f"{board['headings'][rate]}, {how}" for rate in rates for how in ("without", "with", "difference")]
+    return table(["method", *heads], [
         [f"`{method}`", *(cell for rate in rates for cell in cells(method, rate))]
         for method in dict.fromkeys(each["method"] for each in board["information"])])
 
