@@ -28,6 +28,12 @@ install(FILES
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md CODE_OF_CONDUCT.md SECURITY.md LICENSE CITATION.cff
   DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+# The licence goes with each package, where Debian looks for it.
+foreach(package mpmbench.program libmpmbench-dev.development python3-mpmbench.python)
+  string(REGEX MATCH "(.*)[.](.*)" whole "${package}")
+  install(FILES LICENSE RENAME copyright
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_1}" COMPONENT "${CMAKE_MATCH_2}")
+endforeach()
 
 # Where Debian's Python looks when the prefix is /usr, and what +mpmbench is for Octave.
 install(DIRECTORY python/mpmbench DESTINATION lib/python3/dist-packages COMPONENT python PATTERN __pycache__ EXCLUDE)

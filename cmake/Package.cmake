@@ -2,7 +2,7 @@
 # one needs to build on the libraries.
 
 set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_CONTACT "The authors of mpmbench (CITATION.cff)")
+set(CPACK_PACKAGE_CONTACT "The mpmbench developers <nobody@mpmbench.invalid>") # a form that dpkg's tools read; no address
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -20,7 +20,8 @@ file(STRINGS .ci/packages.txt packages REGEX "^[a-z0-9.+-]+ +build")
 list(TRANSFORM packages REPLACE " .*" "")
 list(JOIN packages ", " packages)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmpmbench-dev)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${packages}")
+# Its CMake file names the folder of the studies, which the program's package has.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "mpmbench (= ${PROJECT_VERSION}), ${packages}")
 
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-mpmbench)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)

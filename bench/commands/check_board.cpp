@@ -18,7 +18,6 @@
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/console/output.hpp"
-#include "bench/version.hpp"
 #include "results/document/document.hpp"
 #include "results/document/document_text.hpp"
 #include "results/plot/plot_text.hpp"
@@ -40,9 +39,6 @@ struct CheckBoardArguments {
 std::vector<std::string> troubles_of(const Suite& suite, const FinishedBoard& board,
                                      const FinishedBoard& finished, const JoinedBoard& joined) {
   std::vector<std::string> troubles = joined.notes;
-  if (board.program != mpmbench_version())
-    troubles.push_back(fmt::format("it was made by mpmbench {}, and the finished board is of {}",
-                                   board.program, finished.program));
   for (const SuiteCell& cell : suite.cells)
     if (std::none_of(board.cells.begin(), board.cells.end(), [&cell](const CellScores& each) {
           return each.plant == cell.plant && each.family == cell.family;

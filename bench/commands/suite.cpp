@@ -67,8 +67,7 @@ struct SuiteArguments {
 
 /// The finished board beside which the user's methods are shown; none: they stand alone. Without --join,
 /// these methods join the board of the suite if their loops are those of the suite.
-std::optional<FinishedBoard> board_to_join(const SuiteArguments& options, const Suite& suite,
-                                           Progress& progress) {
+std::optional<FinishedBoard> board_to_join(const SuiteArguments& options, const Suite& suite) {
   const fs::path finished = finished_board_path(suite);
   std::error_code no_status;
   const bool same_loops = !options.choice.seed && !options.run.experiments;
@@ -76,12 +75,7 @@ std::optional<FinishedBoard> board_to_join(const SuiteArguments& options, const 
                           options.shard.empty() && fs::is_regular_file(finished, no_status);
   if (options.join == "none" || (options.join.empty() && !by_default))
     return std::nullopt;
-  FinishedBoard board =
-      read_board(by_default || options.join == "finished" ? finished : fs::path(options.join), suite);
-  if (board.program != mpmbench_version())
-    progress.warn(fmt::format("the board to join is of mpmbench {}, this one is {}", board.program,
-                              mpmbench_version()));
-  return board;
+  return read_board(by_default || options.join == "finished" ? finished : fs::path(options.join), suite);
 }
 
 /// Throws InputError for a method that the board does not have.
@@ -164,7 +158,7 @@ ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   const auto [programs, table] = take_method_files(options.method_files);
   for (SuiteCell& cell : suite.cells)
     cell.study.assessment.table = table;
-  const std::optional<FinishedBoard> finished = board_to_join(options, suite, progress);
+  const std::optional<FinishedBoard> finished = board_to_join(options, suite);
   RunOptions run = options.run;
   run.methods = finished && !programs.empty() && options.run.methods.empty()
                     ? programs

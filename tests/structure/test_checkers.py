@@ -17,6 +17,7 @@ import check_paths
 import check_quotes
 import check_tidy
 import check_used_names
+import check_versions
 
 HEADER = "#pragma once\n"
 
@@ -379,6 +380,28 @@ class Tidy(CheckerTest):
                                 "plants/a.cpp": '#include "plants/a.hpp"\n'}, "plants/a.cpp")
         self.assertNotEqual(result.returncode, 0)
         self.assertIn("plants/a.hpp", result.stdout)
+
+
+class Versions(CheckerTest):
+    TREE = {"CMakeLists.txt": "project(mpmbench\n  VERSION 1.2.3\n", "CITATION.cff": "version: 1.2.3\ndate-released: 2026-01-02\n",
+            "python/mpmbench/version.py": '__version__ = "1.2.3"\n', "CHANGELOG.md": "## [Unreleased]\n\n## [1.2.3] - 2026-01-02\n"}
+
+    def test_clean(self):
+        self.assert_clean(check_versions, {**self.TREE, "docs/a.md": "since mpmbench 1.2.3"})
+
+    def test_every_place_is_compared(self):
+        for place in ("CITATION.cff", "python/mpmbench/version.py", "CHANGELOG.md"):
+            self.assert_one(check_versions, {**self.TREE, place: self.TREE[place].replace("1.2.3", "1.2.2")}, place, "1.2.2")
+
+    def test_the_day_is_that_of_the_changelog(self):
+        self.assert_one(check_versions, {**self.TREE, "CITATION.cff": "version: 1.2.3\ndate-released: 2026-01-03\n"},
+                        "CITATION.cff", "2026-01-03")
+
+    def test_a_place_without_a_version_is_a_complaint(self):
+        self.assert_one(check_versions, {**self.TREE, "python/mpmbench/version.py": "\n"}, "python/mpmbench/version.py", "found none")
+
+    def test_no_document_names_the_file_of_a_package(self):
+        self.assert_one(check_versions, {**self.TREE, "docs/a.md": "install ./mpmbench_1.2.3_amd64.deb\n"}, "docs/a.md:1", "mpmbench_1.2.3")
 
 
 class Main(CheckerTest):
