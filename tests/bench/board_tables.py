@@ -19,7 +19,7 @@ import sys
 ORIGINS = {"mpmbench": "ours", "likelihood": "ours", "order": "ours", "counterfactual": "ours", "excitation": "ours",
            "variance-ratio": "the baseline", "sse": "simulation error", "botelho": "the thesis",
            "badwe2009": "Badwe et al. (2009)", "badwe2010": "Badwe et al. (2010)", "yu-qin": "Yu and Qin (2008)",
-           "sun": "Sun et al. (2013)", "sse+lasso": "two methods as one"}
+           "sun": "Sun et al. (2013)", "sse+lasso": "two methods as one", "counterfactual+order": "two methods as one"}
 REFERENCE = "ceiling"
 LEARNED = "docs/learned.json"
 
