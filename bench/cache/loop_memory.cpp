@@ -82,6 +82,13 @@ bool is_same_answer(const AssessmentRecord& one, const AssessmentRecord& other) 
   return bytes_of(one) == bytes_of(other);
 }
 
+/// Another status than Ipopt's may be a matter of its time.
+bool all_of_audit_agree(const std::vector<AuditedStep>& audited) {
+  return std::all_of(audited.begin(), audited.end(), [](const AuditedStep& step) {
+    return step.targets.same_status && step.moves.same_status;
+  });
+}
+
 /// The record without answers; its loop, where it is to be assessed again, without what follows from it.
 ExperimentRecord unanswered(ExperimentRecord record) {
   record.assessments.clear();
@@ -111,8 +118,7 @@ void KnownLoop::require_expected() const {
 }
 
 bool LoopMemory::may_keep(const Study& study, const RunOptions& options) {
-  return !has_foreign_part(study) && !options.assessor && audited_share(study, options) == 0.0 &&
-         options.store == StorePolicy::none;
+  return !has_foreign_part(study) && !options.assessor && options.store == StorePolicy::none;
 }
 
 LoopMemory::LoopMemory(const Study& study, const Study* calibration, const RunOptions& options)
@@ -120,7 +126,8 @@ LoopMemory::LoopMemory(const Study& study, const Study* calibration, const RunOp
       loop_identity_(memory_identity(study, options, "loops")),
       answer_identity_(memory_identity(study, options, "answers")),
       forms_(assessment_forms(study, study_methods(study))),
-      bytes_(study, AssessmentForms{}) {
+      bytes_(study, AssessmentForms{}),
+      audit_share_(audited_share(study, options)) {
   if (calibration != nullptr)
     calibration_bytes_.emplace(*calibration, AssessmentForms{});
   for (const auto& form : forms_)
@@ -161,13 +168,22 @@ LoopMemory::Kept LoopMemory::kept_as(const MethodDescription& method, const RunO
           .threshold = threshold_in(method.given_options, option->second)};
 }
 
-const RecordBytes& LoopMemory::bytes_of(std::int64_t key) const {
+const OutcomeBytes& LoopMemory::bytes_of(std::int64_t key) const {
   return key < kCalibrationKeys || !calibration_bytes_ ? bytes_ : *calibration_bytes_;
+}
+
+double LoopMemory::audit_share_of(std::int64_t key) const {
+  return key < kCalibrationKeys ? audit_share_ : 0.0;
 }
 
 std::optional<KnownLoop> LoopMemory::find(std::int64_t key) const {
   std::optional<KnownLoop> known = kept_loop(key);
-  return known && known->has_truth ? std::move(known) : std::nullopt;
+  const double share = audit_share_of(key);
+  if (!known || !known->has_truth || (share > 0.0 && known->audit_share != share))
+    return std::nullopt;
+  if (share == 0.0)
+    known->audited.clear();
+  return known;
 }
 
 std::optional<KnownLoop> LoopMemory::find_same(std::int64_t key, const ExperimentRecord& record) const {
@@ -178,7 +194,7 @@ std::optional<KnownLoop> LoopMemory::find_same(std::int64_t key, const Experimen
   ExperimentRecord without = record;
   without.loop.reset();
   without.truth.reset();
-  if (!bytes_of(key).differences(without, known->record).empty())
+  if (!bytes_of(key).differences({.record = without}, {.record = known->record}).empty())
     return std::nullopt;
   known->record.loop = loop;
   return known;
@@ -201,8 +217,11 @@ KnownLoop LoopMemory::known_loop(std::int64_t key, const std::string& loop) cons
   KnownLoop known;
   const std::string bytes = inflated(loop);
   ByteReader reader(bytes);
-  transfer_all(reader, known.has_truth, known.by_process);
-  known.record = bytes_of(key).from_bytes(std::string_view(bytes).substr(bytes.size() - reader.left()));
+  transfer_all(reader, known.has_truth, known.by_process, known.audit_share);
+  ExperimentOutcome outcome =
+      bytes_of(key).from_bytes(std::string_view(bytes).substr(bytes.size() - reader.left()));
+  known.record = std::move(outcome.record);
+  known.audited = std::move(outcome.audited);
   if (known.record.draw.index != key % kCalibrationKeys)
     throw std::runtime_error(fmt::format("loop {}", known.record.draw.index));
   known.record.assessments = unassessed(forms_);
@@ -251,11 +270,13 @@ LoopMemory::NamedAnswers LoopMemory::answers_to_keep(const ExperimentRecord& rec
 }
 
 std::string LoopMemory::to_keep(std::int64_t key, const KnownLoop& loop) const {
-  if (loop.record.status == ExperimentStatus::failed)
+  if (loop.record.status == ExperimentStatus::failed || !all_of_audit_agree(loop.audited))
     return "";
   ByteWriter writer;
-  transfer_all(writer, loop.has_truth, loop.by_process);
-  const std::string content = writer.take() + bytes_of(key).to_bytes(unanswered(loop.record));
+  transfer_all(writer, loop.has_truth, loop.by_process, loop.audit_share);
+  const std::string content =
+      writer.take() +
+      bytes_of(key).to_bytes({.record = unanswered(loop.record), .samples = {}, .audited = loop.audited});
   std::vector<std::string> all;
   for (const auto& form : forms_)
     all.push_back(form->method().name);

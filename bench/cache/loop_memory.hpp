@@ -13,7 +13,7 @@
 #include "analysis/experiment/experiment_record.hpp"
 #include "bench/cache/cache_folder.hpp"
 #include "bench/execution/run_options.hpp"
-#include "results/archive/record_bytes.hpp"
+#include "bench/outcome/outcome_bytes.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {
@@ -30,6 +30,8 @@ struct KnownLoop {
   bool by_process = false;                ///< a worker process ran it, as the methods are to be asked by one
   /// Answers that are known and asked for once more, to see that they are the same (require_expected()).
   std::vector<AssessmentRecord> expected = {};
+  double audit_share = 0.0;  ///< of its steps that were audited
+  std::vector<AuditedStep> audited = {};
 
   /// Throws BrokenPromise where a method has answered otherwise than with the threshold that it had before.
   void require_expected() const;
@@ -43,8 +45,8 @@ struct KnownLoop {
 /// loop in kCheckedLoops is asked again. Nor is anything that has failed, since that may be a matter of time.
 class LoopMemory {
  public:
-  /// Whether the loops of this campaign may be kept: some have a plant or a controller of somebody else, are
-  /// audited, or are assessed by what RunOptions::assessor makes.
+  /// Whether the loops of this campaign may be kept: some have a plant or a controller of somebody else, or
+  /// are assessed by what RunOptions::assessor makes.
   static bool may_keep(const Study& study, const RunOptions& options);
 
   /// Of a campaign whose study and calibration study, or null, must outlive it.
@@ -52,7 +54,8 @@ class LoopMemory {
   LoopMemory(const LoopMemory&) = delete;
   LoopMemory& operator=(const LoopMemory&) = delete;
 
-  /// The loop with this key of CampaignLoops, with its truth; none: it has to be run. From any thread.
+  /// The loop with this key of CampaignLoops, with its truth and the audit of its steps; none: it has to be
+  /// run. From any thread.
   std::optional<KnownLoop> find(std::int64_t key) const;
   /// The same for an experiment of an archive, whose truth is there; none where the record differs from that
   /// of the archive in anything.
@@ -81,7 +84,8 @@ class LoopMemory {
   static Kept kept_as(const MethodDescription& method, const RunOptions& options);
   NamedAnswers answers_to_keep(const ExperimentRecord& record, const std::vector<std::string>& asked,
                                bool by_process) const;
-  const RecordBytes& bytes_of(std::int64_t key) const;
+  const OutcomeBytes& bytes_of(std::int64_t key) const;
+  double audit_share_of(std::int64_t key) const;
   std::optional<KnownLoop> kept_loop(std::int64_t key) const;
   KnownLoop known_loop(std::int64_t key, const std::string& loop) const;
   void read();
@@ -91,8 +95,9 @@ class LoopMemory {
   ShardIdentity loop_identity_, answer_identity_;
   AssessmentForms forms_;
   std::map<std::string, Kept, std::less<>> kept_;  ///< by method
-  RecordBytes bytes_;
-  std::optional<RecordBytes> calibration_bytes_;
+  OutcomeBytes bytes_;
+  std::optional<OutcomeBytes> calibration_bytes_;
+  double audit_share_;  ///< of the experiments of this campaign
   std::map<std::int64_t, std::string> loops_;
   std::map<std::int64_t, Answers> answers_;
   std::size_t held_ = 0;  ///< bytes

@@ -150,7 +150,10 @@ LoopResult CampaignLoops::kept_result(std::int64_t key, ExperimentOutcome outcom
                                       bool by_process) const {
   std::string aside;
   if (memory != nullptr) {
-    const KnownLoop loop{.record = outcome.record, .by_process = by_process};
+    const KnownLoop loop{.record = outcome.record,
+                         .by_process = by_process,
+                         .audit_share = key < kCalibrationKeys ? audited_share(study_, options_) : 0.0,
+                         .audited = outcome.audited};
     aside = memory->to_keep(key, loop);
     outcome.record.loop.reset();
   }
@@ -166,7 +169,8 @@ LoopResult CampaignLoops::heard_result(std::int64_t key, KnownLoop known, const 
   known.require_expected();
   std::string aside = memory.to_keep(known);
   known.record.loop.reset();
-  LoopResult result = this->result(key, {.record = std::move(known.record), .samples = {}, .audited = {}});
+  LoopResult result = this->result(
+      key, {.record = std::move(known.record), .samples = {}, .audited = std::move(known.audited)});
   result.aside = std::move(aside);
   return result;
 }
@@ -194,9 +198,10 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
               ExperimentOutcome outcome = each.run(key);
               if (fall_back && outcome.record.status == ExperimentStatus::failed)
                 return for_process;
-              const bool unfinished = !outcome.samples.empty();
-              LoopResult result = kept_result(key, std::move(outcome), memory, false);
-              result.unfinished = unfinished;
+              if (outcome.samples.empty())
+                return kept_result(key, std::move(outcome), memory, false);
+              LoopResult result = this->result(key, outcome);
+              result.unfinished = true;
               return result;
             });
             return done.value_or(for_process);
@@ -213,10 +218,11 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
       }
       ExperimentOutcome outcome = begun.empty() ? worker->run(key) : bytes(key).from_bytes(begun);
       worker->experiments.audit(outcome);
-      return kept_result(key, std::move(outcome), memory, true);
+      return kept_result(key, std::move(outcome), memory, begun.empty());
     };
-  work.lost = [this, warn](std::int64_t key, const std::string& begun, const std::string& why,
-                           bool again) -> std::optional<LoopResult> {
+  work.lost = [this, warn, keeps = memory != nullptr](std::int64_t key, const std::string& begun,
+                                                      const std::string& why,
+                                                      bool again) -> std::optional<LoopResult> {
     ExperimentOutcome outcome;
     if (begun.empty()) {
       const bool calibrates = key >= kCalibrationKeys;
@@ -225,6 +231,8 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
       return result(key, outcome);
     }
     outcome = bytes(key).from_bytes(begun);
+    if (keeps)
+      outcome.record.loop.reset();
     if (warn)
       warn(fmt::format("the audit of {} steps of experiment {} was lost: {}; the steps are {}",
                        outcome.samples.size(), key, why, again ? "left out of the audit" : "audited again"));

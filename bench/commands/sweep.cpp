@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/study_files/sweep_file.hpp"
+#include "bench/cache/cache_folder.hpp"
 #include "bench/commands/commands.hpp"
 #include "bench/commands/common_options.hpp"
 #include "bench/commands/dry_run.hpp"
@@ -44,8 +45,9 @@ std::string label(const SweepVariant& variant) {
 
 /// Runs every study and writes its archive, one after the other, and at the end the table of all of them
 /// (`sweep.md`, and on stdout). A part of the studies leaves its archives only, which another call finds.
-ExitCode run_sweep(const SweepArguments& options, const std::string& command_line) {
+ExitCode run_sweep(SweepArguments options, const std::string& command_line) {
   const Sweep sweep = find_sweep(options.sweep);
+  options.run.cache = user_cache();
   const std::optional<PartNumber> part = part_of_option(options.shard);
   const fs::path folder = options.output;
   std::vector<const SweepVariant*> variants;
@@ -110,6 +112,7 @@ void add_sweep(CommandSet& commands) {
   add_jobs(app, options->run.jobs, "How many experiments run at once");
   add_solver(app, options->run.solver);
   add_overwrite(app, options->overwrite);
+  add_fresh(app, options->run.fresh);
   add_dry_run(app, options->dry_run);
   add_json(app, options->json);
   add_quiet(app, options->quiet);

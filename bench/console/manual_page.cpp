@@ -29,7 +29,7 @@ Not finished: the command was interrupted, something failed, or output on stdout
 .SH ENVIRONMENT
 .TP
 MPMBENCH_CACHE
-Folder in which loops are kept for the next suite, or off (default: mpmbench in XDG_CACHE_HOME or ~/.cache).
+Folder in which loops are kept for the next suite, sweep or comparison, or off (default: mpmbench in XDG_CACHE_HOME or ~/.cache).
 .TP
 MPMBENCH_CACHE_MB
 Its largest size in megabytes (default: 2000).

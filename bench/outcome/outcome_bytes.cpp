@@ -30,7 +30,9 @@ void transfer_audit(Stream& stream, Outcome& outcome) {
 }  // namespace
 
 OutcomeBytes::OutcomeBytes(const Study& study)
-    : records_(study, assessment_forms(study, study_methods(study))) {}
+    : OutcomeBytes(study, assessment_forms(study, study_methods(study))) {}
+
+OutcomeBytes::OutcomeBytes(const Study& study, const AssessmentForms& forms) : records_(study, forms) {}
 
 std::string OutcomeBytes::to_bytes(const ExperimentOutcome& outcome) const {
   ByteWriter writer;

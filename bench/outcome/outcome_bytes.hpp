@@ -13,8 +13,8 @@ namespace mpm {
 /// What came of one experiment.
 struct ExperimentOutcome {
   ExperimentRecord record;
-  std::vector<AuditSample> samples;  ///< steps that are still to be audited
-  std::vector<AuditedStep> audited;
+  std::vector<AuditSample> samples = {};  ///< steps that are still to be audited
+  std::vector<AuditedStep> audited = {};
   double audit_seconds = 0.0;  ///< processor time
 };
 
@@ -24,6 +24,8 @@ class OutcomeBytes {
  public:
   /// For the methods of the study, which must outlive it.
   explicit OutcomeBytes(const Study& study);
+  /// For these methods.
+  OutcomeBytes(const Study& study, const AssessmentForms& forms);
 
   std::string to_bytes(const ExperimentOutcome& outcome) const;
 

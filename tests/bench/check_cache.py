@@ -1,4 +1,4 @@
-"""What a suite leaves in the cache of the user, and that a suite that takes it up gives what it gives without one.
+"""What suites and sweeps leave in the cache of the user, and that a run that takes it up gives what it gives without one.
 
 usage: check_cache.py MPMBENCH
 """
@@ -52,6 +52,28 @@ title = "noise alone"
 set.simulation.noise_standard_deviation = 5.0
 """
 CELLS = ["column.both", "column.worlds"]
+# Some loops have steps that Ipopt audits.
+SWEEP = """
+[sweep]
+name = "points"
+title = "for a test"
+study = "wood-berry"
+remove = ["simulation.random_steps"]
+set.methods.names = ["botelho", "sse"]
+set.experiments = {mpm = 6, ud = 6, mpm_ud = 0, healthy = 4, tuning = 2}
+set.calibration = {healthy = 4, ud = 0}
+set.simulation.samples = 200
+set.simulation.step = [{md = "F", sample = 20, level = 0.4}, {md = "F", sample = 100, level = -0.4}]
+[[variant]]
+choice = "weight"
+value = "30"
+set.controller.target_violation_cost = 30.0
+[[variant]]
+choice = "noise"
+value = "0.02"
+set.simulation.noise_standard_deviation = 0.02
+"""
+POINTS = ["00", "01", "02"]
 METHOD = """
 import json, sys
 log = open({log!r}, "a", buffering=1)
@@ -280,6 +302,52 @@ def check_compare(cached):
     cached.check_same("after compare", "without")
 
 
+def check_sweep(cached):
+    """Points of a sweep that did not change are not run again; with the audit of their steps they are the same."""
+    cache, sweep = cached.folder / "of sweeps", cached.folder / "points.toml"
+    sweep.write_text(SWEEP)
+
+    def run(output, *words, jobs=1, place=cache):
+        command = [cached.program, "sweep", sweep, "-o", cached.folder / output, "--jobs", jobs, "--json", *words]
+        subprocess.run(list(map(str, command)), check=True, timeout=PATIENCE, capture_output=True,
+                       env={**os.environ, "MPMBENCH_CACHE": str(place)})
+        found = []
+        for point in POINTS:
+            with h5py.File(cached.folder / output / f"{point}.h5") as file:
+                found.append([file[f"methods/{method}"].attrs["milliseconds"] for method in ("botelho", "sse")])
+        return found
+
+    def check_same_sweep(output, other):
+        for point in POINTS:
+            check_same(cached.folder / output / f"{point}.h5", cached.folder / other / f"{point}.h5")
+        assert (cached.folder / output / "sweep.md").read_bytes() == (cached.folder / other / "sweep.md").read_bytes()
+
+    run("points without", place="off")
+    assert not cache.exists()
+    with h5py.File(cached.folder / "points without/00.h5") as file:
+        assert len(file["audit/audited"]) >= 2, list(file["audit"])
+    first = run("points")
+    kept = {path.name for path in cache.iterdir()}
+    assert len(kept) == 2 * len(POINTS), kept
+    assert run("points again", jobs=2) == first
+    check_same_sweep("points again", "points without")
+    with h5py.File(cached.folder / "points again/00.h5") as file:
+        assert file.attrs["audit_share"] > 0 and file.attrs["audit_seconds"] == 0
+    fresh = run("points fresh", "--fresh")
+    assert all(one != other for one, other in zip(fresh, first))
+    check_same_sweep("points fresh", "points without")
+    sweep.write_text(SWEEP.replace('noise_standard_deviation = 0.02', 'noise_standard_deviation = 0.03'))
+    changed = run("points changed")
+    assert changed[:2] == fresh[:2] and changed[2] != fresh[2], (changed, fresh)
+    assert len({path.name for path in cache.iterdir()} - kept) == 2
+    run("points changed without", place="off")
+    check_same_sweep("points changed", "points changed without")
+    for path in cache.iterdir():
+        path.write_bytes(path.read_bytes()[:-300])
+    assert run("points damaged") != changed
+    check_same_sweep("points damaged", "points changed without")
+
+
 def check_damage(cached):
     """A file that is cut off, damaged or of somebody else is as none, and is made again."""
     whole = cached.files().keys()
@@ -335,7 +403,7 @@ def main(program):
     with tempfile.TemporaryDirectory() as folder:
         cached = Cached(program, pathlib.Path(folder))
         for check in (check_same_answers, check_changed_method, check_threshold, check_never_stale, check_compare,
-                      check_damage, check_folder, check_at_once):
+                      check_sweep, check_damage, check_folder, check_at_once):
             check(cached)
             print(check.__name__, "done", flush=True)
 
