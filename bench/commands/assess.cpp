@@ -221,7 +221,8 @@ ExitCode assess(AssessArguments options, const std::string& command) {
 void add_assess(CommandSet& commands) {
   const auto options = std::make_shared<AssessArguments>();
   CLI::App& app = commands.add(
-      "assess", "Assess records of a plant: which CVs lose how much, why, and how certain that is",
+      "assess",
+      "Assess records of a plant: does the model still explain them, what does the loop cost, what to do",
       [options, &commands] { return assess(*options, commands.command_line()); });
   add_path(app, "STUDY", options->study, "Study file, or name of a shipped study")->required();
   add_path(app, "DATA", options->data, "Records of the loop (CSV or netCDF-4)")->required();

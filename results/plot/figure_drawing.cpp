@@ -60,14 +60,11 @@ std::string terminal(FigureFormat format, double width, double height) {
 std::string legend_item(const LegendEntry& entry) {
   const bool line = entry.pen.dash != Dash::none;
   const bool mark = entry.pen.mark != Mark::none;
-  std::string item = fmt::format("keyentry with {} ", line && mark ? "linespoints"
-                                                      : line       ? "lines"
-                                                                   : "points");
-  if (mark)
-    item += mark_words({entry.pen.colour, entry.pen.dash, entry.pen.mark, entry.pen.width, 0.8});
-  if (line)
-    item += mark ? fmt::format(" lw {}", entry.pen.width) : line_words(entry.pen);
-  return item + " title " + gnuplot_label(entry.label);
+  const Pen small{entry.pen.colour, entry.pen.dash, entry.pen.mark, entry.pen.width, 0.8};
+  const std::string words = line && mark ? "linespoints " + line_words(small) + " " + mark_form(small)
+                            : line       ? "lines " + line_words(small)
+                                         : "points " + mark_words(small);
+  return "keyentry with " + words + " title " + gnuplot_label(entry.label);
 }
 
 /// How many rows gnuplot needs for the legend, about.

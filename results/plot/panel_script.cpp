@@ -33,9 +33,13 @@ std::string line_words(const Pen& pen) {
   return fmt::format("lc rgb '{}' lw {} dt {}", pen.colour, pen.width, dash);
 }
 
-std::string mark_words(const Pen& pen) {
+std::string mark_form(const Pen& pen) {
   constexpr int kTypes[] = {0, 7, 6, 9, 5, 13, 12};  // in the order of Mark
-  return fmt::format("pt {} ps {} lc rgb '{}'", kTypes[static_cast<int>(pen.mark)], pen.size, pen.colour);
+  return fmt::format("pt {} ps {}", kTypes[static_cast<int>(pen.mark)], pen.size);
+}
+
+std::string mark_words(const Pen& pen) {
+  return fmt::format("{} lc rgb '{}'", mark_form(pen), pen.colour);
 }
 
 PanelScript::PanelScript(std::string name, std::string title, Axis x, Axis y)

@@ -81,8 +81,9 @@ class PanelScript {
   Panel panel_;
 };
 
-/// A pen in gnuplot's words, for lines and for marks.
+/// A pen in gnuplot's words: for lines, for marks, and the mark without its colour.
 std::string line_words(const Pen& pen);
 std::string mark_words(const Pen& pen);
+std::string mark_form(const Pen& pen);
 
 }  // namespace mpm

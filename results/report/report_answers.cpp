@@ -64,7 +64,7 @@ std::string found(const ReportInput& input) {
   if (text.empty())
     text = found_of_cvs(input);
   if (!text.empty())
-    return text + ".";
+    return text + "." + own_methods_words(input.findings());
   return was_judged(input.findings()) ? "no method both answers nearly always and detects most faults."
                                       : "no loop has a verdict that can be judged.";
 }

@@ -19,6 +19,10 @@ bool was_judged(const StudyFindings& findings);
 /// are programs of the user; empty where no loop was judged.
 std::string comparison_answer(const StudyFindings& findings);
 
+/// Sentences, each behind a space: what each of the user's own methods flags, the best first; empty where
+/// none is.
+std::string own_methods_words(const StudyFindings& findings);
+
 /// The rates that matter most, of those that some loop counts for.
 std::vector<std::string> overview_rates(const StudyFindings& findings);
 

@@ -54,20 +54,6 @@ std::vector<const MethodFindings*> by_rank(const StudyFindings& findings) {
   return methods;
 }
 
-/// What a reader who brings methods asks first; empty where none is his own.
-std::string own_methods_words(const StudyFindings& findings) {
-  std::string text;
-  for (const MethodFindings* const method : by_rank(findings))
-    if (!method->form->method().origin.empty() && method->rates["detected"].total > 0)
-      text += fmt::format(" {} flags {} of the faults{}.", code(as_label(method->name())),
-                          share_words(method->rates["detected"]),
-                          method->rates["false_alarm_healthy"].total == 0
-                              ? ""
-                              : fmt::format(" and {} of the healthy loops",
-                                            share_words(method->rates["false_alarm_healthy"])));
-  return text;
-}
-
 /// "96 [90, 99]", with a mark for a method that answers on a part of the loops only.
 Cell overview_cell(const MethodRates& rates, std::string_view name) {
   const Rate& rate = rates[name];
@@ -102,11 +88,24 @@ bool was_judged(const StudyFindings& findings) {
   });
 }
 
+std::string own_methods_words(const StudyFindings& findings) {
+  std::string text;
+  for (const MethodFindings* const method : by_rank(findings))
+    if (!method->form->method().origin.empty() && method->rates["detected"].total > 0)
+      text += fmt::format(" {} flags {} of the faults{}.", code(method->name()),
+                          share_words(method->rates["detected"]),
+                          method->rates["false_alarm_healthy"].total == 0
+                              ? ""
+                              : fmt::format(" and {} of the healthy loops",
+                                            share_words(method->rates["false_alarm_healthy"])));
+  return text;
+}
+
 std::string comparison_answer(const StudyFindings& findings) {
   std::string text;
   const auto best = [&](const char* what, std::string_view rate) {
     if (const MethodFindings* const method = best_method(findings, rate))
-      text += fmt::format("{}{} by {}, {}", text.empty() ? "" : "; ", what, code(as_label(method->name())),
+      text += fmt::format("{}{} by {}, {}", text.empty() ? "" : "; ", what, code(method->name()),
                           share_words(method->rates[rate]));
   };
   best("the CV is found most often", "located");

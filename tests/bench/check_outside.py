@@ -415,7 +415,7 @@ def check_program_refusals(outside):
 
 def check_programs(outside, octave):
     """SSE in Python and in Octave gives what SSE in C++ gives, in any number of threads and processes."""
-    commands = {"mine-py": [sys.executable, "examples/mine.py"]}
+    commands = {"mine_py": [sys.executable, "examples/mine.py"]}
     if octave:
         commands["mine-m"] = [octave, "--norc", "--quiet", "--no-gui", "examples/mine.m"]
     methods = outside.folder / "methods.toml"
@@ -437,17 +437,22 @@ def check_programs(outside, octave):
                 values = file[variable][:]
                 assert numpy.array_equal(values[:, place[name]], values[:, place["sse"]]), (name, variable)
             assert numpy.allclose(file["score"][:, place[name]], file["score"][:, place["sse"]], rtol=1e-10), name
-        assert numpy.allclose(file["methods/mine-py/ratio"][:], file["methods/sse/ratio"][:], rtol=1e-10)
+        assert numpy.allclose(file["methods/mine_py/ratio"][:], file["methods/sse/ratio"][:], rtol=1e-10)
+    # What a reader who brings methods asks first, with their names as he wrote them.
+    assert "mine_py flags " in " ".join(outside.run("compare", later).split())
+    page = outside.folder / "programs.html"
+    outside.run("report", later, "-o", page)
+    assert "<code>mine_py</code> flags " in page.read_text(encoding="utf-8").partition("Found:")[2].partition("</p>")[0]
     # In the run itself the same, in threads and in processes. Octave is the same program, and slow to start.
-    methods.write_text(f"[method.mine-py]\ncommand = {commands['mine-py']}\n", encoding="utf-8")
+    methods.write_text(f"[method.mine_py]\ncommand = {commands['mine_py']}\n", encoding="utf-8")
     for way in "threads", "processes":
         path = outside.folder / f"{way}.h5"
-        outside.run("run", "chapter6", "-o", path, "--experiments", EXPERIMENTS, "--methods", "sse,mine-py",
+        outside.run("run", "chapter6", "-o", path, "--experiments", EXPERIMENTS, "--methods", "sse,mine_py",
                     "--method-file", methods, "--solver", "active-set", "--parallel", way, "--jobs", 2, "--quiet")
         with h5py.File(path) as file, h5py.File(later) as before:
             for variable in "score", "flagged":
-                assert numpy.array_equal(file[variable][:, 1], before[variable][:, place["mine-py"]]), (way, variable)
-    assert "mine-py" in outside.run("summary", path)
+                assert numpy.array_equal(file[variable][:, 1], before[variable][:, place["mine_py"]]), (way, variable)
+    assert "mine_py" in outside.run("summary", path)
 
 
 CORRECTED = """
