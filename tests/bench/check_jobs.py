@@ -30,7 +30,7 @@ STUBS = {
     "git": 'echo "git $*" >>"$CALLS"\n'
            f'case "$*" in *rev-parse*) echo {COMMIT} ;; clone*"$CLONED_FROM mpmbench") cp -r "$TREE" mpmbench ;; *) exit 1 ;; esac',
     "curl": 'echo "curl $*" >>"$CALLS"\ncp "${4#https://releases.example/}" "$3"',
-    "docker": 'echo "docker $1" >>"$CALLS"\n[ "$1" = build ] && exit\n'  # run --rm -v FOLDER:/work mpmbench WORDS
+    "docker": '[ "$1" = info ] && exit\necho "docker $1" >>"$CALLS"\n[ "$1" = build ] && exit\n'  # run --rm -v FOLDER:/work mpmbench WORDS
               'cd "${4%:/work}" && shift 5 && exec mpmbench "$@"',
     "mpmbench": 'echo "mpmbench $1" >>"$CALLS"\ncase "$1 $2" in "run chapter6") ;; run*) set -- "$@" --experiments 8 ;; '
                 'suite*) set -- "$@" --experiments 2 --plants wood-berry --families exact ;; esac\nexec "$MPMBENCH" "$@"',
