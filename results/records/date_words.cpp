@@ -173,7 +173,7 @@ bool is_date(std::string_view cell) {
 }
 
 bool is_time_of_day(std::string_view cell) {
-  return in_any_language(cell, is_time_of_english);
+  return !written_date(cell) && in_any_language(cell, is_time_of_english);
 }
 
 }  // namespace mpm

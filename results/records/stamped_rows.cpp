@@ -48,14 +48,10 @@ const std::string* first_cell(const std::vector<std::string>& cells) {
   return found == cells.end() ? nullptr : &*found;
 }
 
-bool begins_with_date(const std::vector<std::string>& cells) {
-  const std::string* const cell = first_cell(cells);
-  return cell != nullptr && is_date(*cell);
-}
-
-bool begins_with_time_of_day(const std::vector<std::string>& cells) {
-  const std::string* const cell = first_cell(cells);
-  return cell != nullptr && is_time_of_day(*cell);
+/// By `reads`; a number is none, so that no language is asked about the E of its exponent.
+bool first_cell_is(bool (*reads)(std::string_view), const RecordColumns& file, std::size_t column) {
+  const std::string* const cell = first_cell(file.columns[column]);
+  return cell != nullptr && !file.number(*cell) && reads(*cell);
 }
 
 /// Values that have their time stamps in common: columns of the file that is made, and where their cells are.
@@ -133,7 +129,7 @@ class RowsReader {
       return most;
     most.clear();
     for (std::size_t column = 0; column < file_.names.size(); ++column)
-      if (begins_with_date(file_.columns[column]))
+      if (first_cell_is(is_date, file_, column))
         most.push_back(column);
     return most;
   }
@@ -198,7 +194,7 @@ class RowsReader {
   std::optional<std::size_t> column_of_dates() const {
     std::optional<std::size_t> found;
     for (std::size_t column = 0; column < file_.names.size(); ++column) {
-      if (!begins_with_date(file_.columns[column]))
+      if (!first_cell_is(is_date, file_, column))
         continue;
       if (found)
         throw InputError(fmt::format("{}: time stamps", file_.file),
@@ -226,7 +222,7 @@ class RowsReader {
 
   /// Cells of the stamps: those of the column, with the dates of another one before times of day.
   std::vector<std::string> stamp_cells(std::size_t& column) const {
-    const bool no_date = begins_with_time_of_day(file_.columns[column]);
+    const bool no_date = first_cell_is(is_time_of_day, file_, column);
     std::optional<std::size_t> dates;
     if (!data_.date.empty())
       dates = file_.column(file_.file + ": data.date", data_.date);
@@ -252,7 +248,7 @@ class RowsReader {
   std::optional<std::size_t> times_beside(std::size_t column) const {
     std::optional<std::size_t> found;
     for (std::size_t other = 0; other < file_.names.size(); ++other)
-      if (begins_with_time_of_day(file_.columns[other])) {
+      if (first_cell_is(is_time_of_day, file_, other)) {
         if (found)
           return std::nullopt;
         found = other;
