@@ -231,7 +231,7 @@ def check_garbage(mistakes):
         message = mistakes.refused(record, "found", "allowed")
         assert message.startswith("mpmbench: "), message
     whole = text_of(mistakes.rows)
-    for _ in range(40):  # cells, lines and separators that are damaged: an answer or a sentence, never a crash
+    for _ in range(40 if "MPMBENCH_TEST_ALL" in os.environ else 10):  # cells, lines and separators that are damaged: an answer or a sentence, never a crash
         damaged = list(whole)
         for _ in range(stream.choice([1, 20, 2000])):
             damaged[stream.randrange(len(damaged))] = stream.choice(',;.\n"0-eN\t9 ')

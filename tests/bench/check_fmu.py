@@ -87,14 +87,21 @@ affected = ["h1"]
 parameter = [{{name = "failure", value = {how}}}]
 """
     (folder / "hostile.toml").write_text(text)
-    for parallel in "processes", "threads":
-        mark = f"MPMBENCH_HOSTILE={os.getpid()}-{parallel}"
-        environment = {**os.environ, "TMPDIR": str(temporary), "MPMBENCH_HOSTILE": mark.partition("=")[2]}
-        archive = folder / f"hostile-{parallel}.h5"
-        words = [program, "run", "hostile.toml", "-o", archive, "--parallel", parallel, "--jobs", "2", "--quiet"]
-        subprocess.run(words, cwd=folder, env=environment, timeout=120, check=True)
-        await_end(mark)
-        with h5py.File(archive) as file:
+
+    def start(mark, *words):
+        """All at once, as they wait most of their time."""
+        return subprocess.Popen([program, "run", *words, "--quiet"], cwd=folder,
+                                env={**os.environ, "TMPDIR": str(temporary), "MPMBENCH_HOSTILE": mark.partition("=")[2]})
+
+    def mark_of(what):
+        return f"MPMBENCH_HOSTILE={os.getpid()}-{what}"
+
+    running = {parallel: start(mark_of(parallel), "hostile.toml", "-o", f"hostile-{parallel}.h5", "--parallel", parallel,
+                               "--jobs", "2") for parallel in ("processes", "threads")}
+    for parallel, process in running.items():
+        assert process.wait(timeout=120) == 0
+        await_end(mark_of(parallel))
+        with h5py.File(folder / f"hostile-{parallel}.h5") as file:
             status, messages = list(file["status"][:]), list(file["message"].asstr())
         for how, one, message in zip(HOSTILE, status, messages):
             assert one == (0 if HOSTILE[how] is None else 2), (how, one, message)
@@ -102,15 +109,13 @@ parameter = [{{name = "failure", value = {how}}}]
 
     # Ended from outside while it does not answer: it ends with the command, long before its time limit.
     (folder / "slow.toml").write_text(text.replace("time_limit = 2", "time_limit = 600"))
-    for by in signal.SIGTERM, signal.SIGKILL:
-        mark = f"MPMBENCH_HOSTILE={os.getpid()}-{by}"
-        words = [program, "run", "slow.toml", "-o", folder / "slow.h5", "--discard", "--jobs", "6", "--quiet"]
-        process = subprocess.Popen(words, cwd=folder, stderr=subprocess.DEVNULL,
-                                   env={**os.environ, "TMPDIR": str(temporary), "MPMBENCH_HOSTILE": mark.partition("=")[2]})
-        time.sleep(4)
+    running = {by: start(mark_of(by), "slow.toml", "-o", f"slow-{by}.h5", "--discard", "--jobs", "6")
+               for by in (signal.SIGTERM, signal.SIGKILL)}
+    time.sleep(4)
+    for by, process in running.items():
         process.send_signal(by)
         process.wait(timeout=20)
-        await_end(mark)
+        await_end(mark_of(by))
     for left in temporary.iterdir():
         shutil.rmtree(left)
 
