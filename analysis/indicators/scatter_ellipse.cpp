@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
-#include <boost/math/distributions/chi_squared.hpp>
 
+#include "analysis/statistics/chi_squared.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "base/non_finite.hpp"
 
@@ -54,7 +54,7 @@ bool ConfidenceEllipse::contains(double x, double y) const {
 
 ConfidenceEllipse confidence_ellipse(const CentredSums& sums, double probability) {
   require_confidence(probability);
-  const double factor = std::sqrt(boost::math::quantile(boost::math::chi_squared(2.0), probability));
+  const double factor = std::sqrt(chi_squared_quantile(probability, 2.0));
   const PrincipalAxes axes = principal_axes(sums);
   return {sums.mean_x, sums.mean_y, axes.angle, factor * axes.major, factor * axes.minor};
 }

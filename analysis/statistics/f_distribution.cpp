@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <fmt/format.h>
@@ -40,6 +41,11 @@ double log_f_tail(double f, double numerator, double denominator) {
   const double x = denominator / (denominator + numerator * f);
   const double p = boost::math::ibeta(a, b, x);
   return p > kSmallTail ? std::log(p) : log_small_beta(a, b, x);
+}
+
+double f_upper_quantile(double probability, double numerator, double denominator) {
+  return boost::math::quantile(
+      boost::math::complement(boost::math::fisher_f(numerator, denominator), probability));
 }
 
 }  // namespace mpm

@@ -11,4 +11,7 @@ namespace mpm {
 /// @throws InputError for f below 0 or NaN, or degrees of freedom that are not above 0
 double log_f_tail(double f, double numerator, double denominator);
 
+/// f with P(F > f) = `probability` of the same distribution.
+double f_upper_quantile(double probability, double numerator, double denominator);
+
 }  // namespace mpm

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boost/math/distributions/students_t.hpp>
+#include "analysis/statistics/student.hpp"
 
 namespace mpm {
 
@@ -28,9 +28,7 @@ SampleSummary summarise(const std::vector<double>& values, double confidence) {
   for (const double value : values)
     if (!std::isnan(value))
       squares += (value - summary.mean) * (value - summary.mean);
-  const boost::math::students_t student(n - 1.0);
-  const double half =
-      boost::math::quantile(student, 0.5 + 0.5 * confidence) * std::sqrt(squares / (n - 1.0) / n);
+  const double half = student_quantile(0.5 + 0.5 * confidence, n - 1.0) * std::sqrt(squares / (n - 1.0) / n);
   summary.mean_interval = {summary.mean - half, summary.mean + half};
   return summary;
 }

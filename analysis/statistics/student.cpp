@@ -12,6 +12,10 @@ double two_sided_student_quantile(double confidence, std::int64_t freedom) {
   return boost::math::quantile(boost::math::complement(student, (1.0 - confidence) / 2.0));
 }
 
+double student_quantile(double probability, double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), probability);
+}
+
 double student_upper_tail(double t, std::int64_t freedom) {
   const boost::math::students_t student(static_cast<double>(freedom));
   return boost::math::cdf(boost::math::complement(student, t));

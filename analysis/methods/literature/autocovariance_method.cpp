@@ -10,13 +10,13 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/loop_autocovariance.hpp"
 #include "analysis/methods/literature/mismatch_search.hpp"
 #include "analysis/statistics/best_candidate.hpp"
+#include "analysis/statistics/chi_squared.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/toml/option_keys.hpp"
@@ -55,8 +55,7 @@ constexpr double kAtLimit = 1e-6;
 constexpr double kIntervalStep = 0.01;  ///< first step to the end of an interval, share of the search
 
 double chi_squared_limit(Eigen::Index freedom, double probability) {
-  return boost::math::quantile(boost::math::complement(
-      boost::math::chi_squared_distribution<>(static_cast<double>(freedom)), probability));
+  return chi_squared_upper_quantile(probability, static_cast<double>(freedom));
 }
 
 /// r' Sigma^-1 r.

@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/literature/prewhitened_groups.hpp"
+#include "analysis/statistics/student.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -133,9 +133,8 @@ class Local final : public AssessmentMethod {
         surest = each;
       }
     }
-    const boost::math::students_t_distribution<> t(static_cast<double>(groups.freedom));
-    const double half =
-        surest.deviation * boost::math::quantile(t, 0.5 * (1.0 + study_.aggregate.confidence));
+    const double half = surest.deviation * student_quantile(0.5 * (1.0 + study_.aggregate.confidence),
+                                                            static_cast<double>(groups.freedom));
     const double size = kGradientNominal[best] + surest.step;
     return {
         {cv, static_cast<Eigen::Index>(channel)}, kGradientParameters[best], size, size - half, size + half};

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
 
 #include "analysis/methods/literature/channel_regressors.hpp"
 #include "analysis/methods/literature/mismatch_search.hpp"
+#include "analysis/statistics/chi_squared.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
@@ -41,7 +41,7 @@ std::vector<ProfiledMismatch> profiled_mismatches(const Eigen::Ref<const Eigen::
   if (channel.is_zero())
     throw InputError("channel of a mismatch", "one without effect", "one with a gain");
   const auto n = static_cast<double>(e.size() - order);
-  const double chi = boost::math::quantile(boost::math::chi_squared_distribution<>(1.0), confidence);
+  const double chi = chi_squared_quantile(confidence, 1.0);
   const auto response = [&](const TransferFunction& each) -> Eigen::VectorXd {
     return channel_response(each, sample_time, input).tail(e.size());
   };

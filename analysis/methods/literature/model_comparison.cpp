@@ -4,19 +4,14 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <fmt/format.h>
 
 #include "analysis/methods/literature/prewhitened_groups.hpp"
+#include "analysis/statistics/f_distribution.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
 namespace {
-
-double critical_quantile(double freedom_1, double freedom_2, double probability) {
-  return boost::math::quantile(
-      boost::math::complement(boost::math::fisher_f_distribution<>(freedom_1, freedom_2), probability));
-}
 
 double plant_distance(const PrewhitenedGroups& groups, const HealthyModel& before, double probability) {
   if (groups.rank == 0)
@@ -38,7 +33,7 @@ double noise_distance(const Eigen::VectorXd& v, const Eigen::VectorXd& v_before,
   const Eigen::VectorXd weighted =
       now.information * (now.information + before.information).ldlt().solve(before.information * difference);
   return difference.dot(weighted) / static_cast<double>(p) /
-         critical_quantile(static_cast<double>(p), std::min(now.freedom, before.freedom), probability);
+         f_upper_quantile(probability, static_cast<double>(p), std::min(now.freedom, before.freedom));
 }
 
 }  // namespace
@@ -100,8 +95,8 @@ ModelComparison compare_models(const PlantAndNoise& now, const HealthyModel& bef
   result.noise_model = noise_distance(v, before.v, probability);
   const auto f = static_cast<double>(groups.freedom), f_before = static_cast<double>(before.freedom);
   const double ratio = groups.variance / before.variance;
-  result.noise_variance = std::max(ratio / critical_quantile(f, f_before, 0.5 * probability),
-                                   1.0 / ratio / critical_quantile(f_before, f, 0.5 * probability));
+  result.noise_variance = std::max(ratio / f_upper_quantile(0.5 * probability, f, f_before),
+                                   1.0 / ratio / f_upper_quantile(0.5 * probability, f_before, f));
   return result;
 }
 

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include <Eigen/QR>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <fmt/format.h>
 
 #include "analysis/statistics/discrete_filter.hpp"
+#include "analysis/statistics/f_distribution.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
@@ -152,8 +152,7 @@ double PrewhitenedGroups::joint_ratio() const {
 double PrewhitenedGroups::critical_ratio_of(Eigen::Index columns, double probability) const {
   if (columns == 0)
     return kInfinity;
-  const boost::math::fisher_f_distribution<> null(static_cast<double>(columns), static_cast<double>(freedom));
-  return boost::math::quantile(boost::math::complement(null, probability));
+  return f_upper_quantile(probability, static_cast<double>(columns), static_cast<double>(freedom));
 }
 
 Eigen::VectorXd PrewhitenedGroups::coefficients() const {

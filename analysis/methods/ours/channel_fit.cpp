@@ -10,12 +10,12 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
 
 #include "analysis/identification/autoregression.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/sensitivity/nominal_output.hpp"
+#include "analysis/statistics/chi_squared.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
@@ -308,7 +308,7 @@ ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
   const double gain = search.gain_at(point);
   const double least = search.squares(point, gain);
   const auto samples = static_cast<double>(search.whiteness().rows.size());
-  const double limit = boost::math::quantile(boost::math::chi_squared_distribution<>(1.0), confidence);
+  const double limit = chi_squared_quantile(confidence, 1.0);
   const auto excess = [&](double squares) { return samples * std::log(squares / least) - limit; };
   const auto of_gain = [&](double value) {
     return excess(search.squares(search.searched(point, value, {true, true, true, true}), value));

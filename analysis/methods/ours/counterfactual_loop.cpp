@@ -5,12 +5,12 @@
 #include <memory>
 #include <utility>
 
-#include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
 #include "analysis/indicators/diagnosis.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
+#include "analysis/statistics/student.hpp"
 #include "analysis/statistics/variance.hpp"
 #include "analysis/statistics/washout.hpp"
 #include "base/non_finite.hpp"
@@ -173,7 +173,7 @@ std::optional<CounterfactualLoop::Indices> CounterfactualLoop::indices_under_noi
     drawn.col(draw) = variances(loop.in_window(outputs[static_cast<std::size_t>(draw)]), centres);
   constexpr double n = kNoiseDraws;
   const double tails = kChance / static_cast<double>(drawn.rows());
-  const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 1.0 - 0.5 * tails);
+  const double t = student_quantile(1.0 - 0.5 * tails, n - 1.0);
   const Eigen::ArrayXXd logs = drawn.log();
   const Eigen::ArrayXd squares = (logs.colwise() - logs.rowwise().mean()).square().rowwise().sum();
   const Eigen::VectorXd chance = t * (squares * (1.0 + 1.0 / n) / (n - 1.0)).sqrt();

@@ -8,12 +8,12 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <boost/math/special_functions/gamma.hpp>
 
 #include "analysis/identification/kalman_whitening.hpp"
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/disturbance_scan.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
+#include "analysis/statistics/chi_squared.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -103,8 +103,7 @@ double p_of_none(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance)
       chi_squared += b(i) * b(i) / told.eigenvalues()(i);
       ++freedom;
     }
-  return freedom > 0 && std::isfinite(chi_squared) ? boost::math::gamma_q(freedom / 2.0, chi_squared / 2.0)
-                                                   : 1.0;
+  return freedom > 0 && std::isfinite(chi_squared) ? chi_squared_upper_tail(chi_squared, freedom) : 1.0;
 }
 
 /// The mean of a normal vector that is nowhere below `least`: what lies lowest below it is held there, one

@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "analysis/statistics/chi_squared.hpp"
 #include "analysis/statistics/f_distribution.hpp"
+#include "analysis/statistics/student.hpp"
 
 namespace mpm {
 
@@ -25,6 +27,18 @@ TEST_CASE("F distribution: closed forms of the tail, down to where a probability
   CHECK(log_f_tail(400.0, 12, 380) < -345.0);  // ln 1e-150
   CHECK_THROWS_WITH(log_f_tail(-1.0, 2, 3), Catch::Contains("F ratio: found -1"));
   CHECK_THROWS_WITH(log_f_tail(1.0, 0, 3), Catch::Contains("degrees of freedom"));
+}
+
+TEST_CASE("quantiles of the chi-squared, Student and F distributions fit tables, tails and each other") {
+  CHECK(chi_squared_quantile(0.95, 1.0) == Approx(3.841458820694124));
+  CHECK(chi_squared_upper_quantile(0.01, 4.0) == Approx(13.27670413598762));
+  CHECK(chi_squared_upper_tail(chi_squared_quantile(0.9, 3.0), 3.0) == Approx(0.1));
+  const double t = student_quantile(0.975, 7.0);
+  CHECK(t == Approx(2.364624251592784));
+  CHECK(two_sided_student_quantile(0.95, 7) == Approx(t));
+  CHECK(student_upper_tail(t, 7) == Approx(0.025));
+  CHECK(f_upper_quantile(0.05, 1.0, 7.0) == Approx(t * t));
+  CHECK(std::exp(log_f_tail(f_upper_quantile(0.01, 3.0, 20.0), 3.0, 20.0)) == Approx(0.01));
 }
 
 }  // namespace mpm
