@@ -38,7 +38,7 @@ void add_candidates(const RecordAssessment& of, Texts& sentences) {
 void add_repair(const RecordAssessment& of, Texts& sentences) {
   if (!of.no_repair.empty())
     sentences.push_back(fmt::format("What a repair would bring is not known: {}.", of.no_repair));
-  if (of.repair && !of.repair->repair.named)
+  if (of.repair && !of.repair->repair.parameter)  // of one parameter the verdict has the size
     sentences.push_back(fmt::format("Identified again from this record, {} has {}.",
                                     channel_name(of.study, of.repair->repair.channel),
                                     correction_text(of.study, of.repair->repair)));

@@ -46,7 +46,7 @@ def learned_cell(cell):
                 if isinstance(rate, dict) and rate.get("value") is not None}
     return {**{key: cell[key] for key in ("cell", "classifier", "seed", "test_loops")},
             "curve": [{"loops": each["loops"], "worlds": each["worlds"], **kept(each)} for each in cell["curve"]],
-            "methods": {name: kept(rates) for name, rates in cell["methods"].items()}}
+            "methods": {name: kept(rates) for name, rates in cell["methods"].items() if ":" not in name}}
 
 
 def percents(rate):
@@ -201,7 +201,7 @@ def learned(cells):
     names = [name for name, _ in sorted(
         {name: sum(cell["methods"].get(name, {}).get("source_05_impact", {}).get("value", 0) for cell in cells)
          for cell in cells for name, rates in cell["methods"].items() if "source_05_impact" in rates
-         and name not in (REFERENCE, "learned")}.items(), key=lambda each: -each[1])]
+         and name not in (REFERENCE, "learned") and ":" not in name}.items(), key=lambda each: -each[1])]
     return table(["cell", "learned (reference)", *(f"`{name}`" for name in names)], [
         [f"`{cell['cell']}`", *(percents(cell["methods"].get(name, {}).get("source_05_impact")) or "-"
                                 for name in ["learned", *names])] for cell in cells])

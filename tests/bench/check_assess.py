@@ -327,8 +327,8 @@ def check_trust(bench, study):
 
 def check_one_estimate(answer):
     """Verdict and repair have one number, which is printed once."""
-    mismatch, repair = answer["methods"][0]["mismatch"], answer["repair"]
-    assert repair["estimated_by"] == "verdict" and repair["parameter"] == mismatch["parameter"], repair
+    mismatch, repair = answer["model"]["mismatch"], answer["repair"]
+    assert repair["estimated_by"] == "fit" and repair["parameter"] == mismatch["parameter"], repair
     assert repair["size"] == {"value": mismatch["size"], **{key: mismatch[key] for key in ("lower", "upper", "bound")}}
     assert repair["dead_time_shift"] == repair["size"], repair  # of experiment 0
     printed = " ".join(answer["verdict"])

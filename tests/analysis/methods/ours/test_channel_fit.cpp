@@ -147,7 +147,8 @@ TEST_CASE("channel fit: what other channels may have wrong is in its interval") 
   int beside = 0, alone = 0;
   for (int loop = 0; loop < kLoops; ++loop) {
     RandomStream stream(10, loop, StreamId::measurement_noise);
-    const Eigen::VectorXd u = moving_mv(stream), v = moving_mv(stream);
+    const Eigen::VectorXd u = moving_mv(stream),
+                          v = u + 0.3 * moving_mv(stream);  // one controller moves both
     const Eigen::VectorXd response = response_of(other, v);
     const Eigen::VectorXd e = error_of(modelled_channel().with_gain_scaled(0.7), u, 0.02, 0.0, stream) +
                               kError * stream.normal() * response;
