@@ -60,7 +60,7 @@ ChannelRepair fitted_repair(const Study& study, const OperatingPoint& point, con
             untold.rightCols(untold.cols() - 1).transpose();  // a constant is free
     return identified_channel(study, point, loop, channel, only, beside);
   };
-  const ChannelRepair first = fitted_beside(nominal);
+  ChannelRepair first = fitted_beside(nominal);
   if (!only)
     return first;
   // The other parameters of the channel act as it is, and not as the model has it.
