@@ -17,7 +17,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # Most of the time of a build goes into reading headers and instantiating Eigen. Sources that are compiled as one
 # share that: 24 at a time take a third of the compiler's time away that 12 take, which take half of that of single ones.
 # The price is that a change compiles its neighbours too, so the preset debug compiles each source by itself, and up to
-# 2 GB of memory for a compiler, of which no more run at once than find that much. gcc's garbage collector looks through
+# 2.2 GB of memory for a compiler, of which no more run at once than find 2. gcc's garbage collector looks through
 # all that several times, a tenth of the compiler's time, unless it waits: until there are 1.5 GB, and half as much again.
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 24 CACHE STRING "Sources that are compiled as one, with CMAKE_UNITY_BUILD")
 if(CMAKE_UNITY_BUILD)
