@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "analysis/methods/ours/base_noise.hpp"
+#include "analysis/methods/ours/cv_evidence.hpp"
 #include "analysis/methods/ours/model_errors.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "base/non_finite.hpp"
@@ -14,8 +15,6 @@ namespace {
 /// An onset is looked for as far beside its interval as that is long, and a growth over a part of the record.
 constexpr Eigen::Index kLeastRoom = 5;
 constexpr Eigen::Index kGrowingPart = 3;
-/// Of what no record can tell, in deviations of the noise: y_sim has most of it.
-constexpr double kUntold = 30.0;
 
 FitSurroundings::Onset onset_range(const FaultOnset& since, Eigen::Index samples) {
   const Eigen::Index room = std::max(kLeastRoom, since.latest - since.earliest);
@@ -56,7 +55,7 @@ ChannelRepair fitted_repair(const Study& study, const OperatingPoint& point, con
   const auto fitted_beside = [&](const Eigen::MatrixXd& slopes) {
     beside.unknown.resize(slopes.rows() + untold.cols() - 1, loop.samples());
     beside.unknown << slopes.middleCols(loop.first, loop.samples()),
-        kUntold * deviation_of_steps(e) *
+        CvLikelihood::kUntold * deviation_of_steps(e) *
             untold.rightCols(untold.cols() - 1).transpose();  // a constant is free
     return identified_channel(study, point, loop, channel, only, beside);
   };

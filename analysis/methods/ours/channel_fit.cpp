@@ -332,18 +332,19 @@ ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
     return bound_within(point[number], search.least()[number], search.largest()[number]);
   };
   // At its lower end the dead time is 0, and there is nothing beyond.
-  const SizeBound bound_of_time = bound_of_number(0), bound_of_shift = bound_of_number(1);
+  const SizeBound bound_of_time = bound_of_number(kOfTime), bound_of_shift = bound_of_number(kOfShift);
   const FittedNumber gain_factor{gain, gain_end(-1.0), gain_end(1.0)};
   return {.gain_factor = gain_factor,
-          .time_factor = {std::exp(point[0]), std::exp(end(0, search.least()[0])),
-                          std::exp(end(0, search.largest()[0])), bound_of_time},
-          .dead_time_shift = {point[1], end(1, search.least()[1]), end(1, search.largest()[1]),
+          .time_factor = {std::exp(point[kOfTime]), std::exp(end(kOfTime, search.least()[kOfTime])),
+                          std::exp(end(kOfTime, search.largest()[kOfTime])), bound_of_time},
+          .dead_time_shift = {point[kOfShift], end(kOfShift, search.least()[kOfShift]),
+                              end(kOfShift, search.largest()[kOfShift]),
                               bound_of_shift == SizeBound::at_most ? SizeBound::none : bound_of_shift},
           .noise_order = search.whiteness().order(),
           .explained = std::max(0.0, 1.0 - least / search.squares_of_model()),
           .channel = nominal.with_gain_scaled(gain)
-                         .with_time_scaled(std::exp(point[0]))
-                         .with_dead_time_shifted(point[1])};
+                         .with_time_scaled(std::exp(point[kOfTime]))
+                         .with_dead_time_shifted(point[kOfShift])};
 }
 
 }  // namespace mpm

@@ -57,6 +57,10 @@ inline constexpr auto kWords<JudgedMismatches> = word_list("nearest", "all");
 /// summed over scan_disturbances().
 class CvLikelihood {
  public:
+  /// Of a coefficient of what no record can tell, in standard deviations of the noise: y_sim has it already,
+  /// and what is left of it is small.
+  static constexpr double kUntold = 30.0;
+
   /// `prior` must outlive the likelihood.
   CvLikelihood(ModelErrors model, double sample_time, const CvPrior& prior, double noise_freedom,
                bool starts_from_rest, JudgedMismatches judged = JudgedMismatches::nearest);
@@ -84,8 +88,6 @@ class CvLikelihood {
                    const Eigen::Ref<const Eigen::MatrixXd>& untold, double share, CvEvidence& evidence) const;
 
  private:
-  static constexpr double kUntold = 30.0;  ///< y_sim has them already: what is left of them is small
-
   /// ModelErrors::slopes(), and below them what is untold.
   Eigen::MatrixXd slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                          const Eigen::Ref<const Eigen::VectorXd>& initial,
