@@ -20,7 +20,8 @@ bool is_without_fault(const ExperimentRecord& record) {
   return record.draw.kind == ExperimentKind::healthy;
 }
 
-RecordSource record_source(FaultSource source) {
+/// A valve, where it is not said to be a sensor.
+RecordSource record_source(FaultSource source, ToldSource told = ToldSource::valve) {
   switch (source) {
     case FaultSource::mpm:
       return RecordSource::mismatch;
@@ -29,7 +30,9 @@ RecordSource record_source(FaultSource source) {
     case FaultSource::mpm_ud:
       return RecordSource::both;
     case FaultSource::other:
-      return RecordSource::valve;
+      return told == ToldSource::sensor  ? RecordSource::sensor
+             : told == ToldSource::valve ? RecordSource::valve
+                                         : RecordSource::unknown;
     case FaultSource::none:
       break;
   }
@@ -100,7 +103,8 @@ OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRec
     weights[RecordSource::mismatch] = of("p_mpm");
     weights[RecordSource::disturbance] = of("p_ud");
     weights[RecordSource::both] = of("p_both");
-    weights[RecordSource::valve] = of("p_other");
+    weights[RecordSource::sensor] = of("p_sensor");
+    weights[RecordSource::valve] = of("p_other") - of("p_sensor");
   }
   if (!said.answered() || !said.flagged)
     return weights;
@@ -111,10 +115,7 @@ OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRec
       mismatch = disturbance = 0.5 * (mismatch + disturbance);
     return weights;
   }
-  const RecordSource named =
-      said.predicted_source == FaultSource::other && std::isnan(said.number("valve_mv"))
-          ? RecordSource::unknown
-          : record_source(said.predicted_source);
+  const RecordSource named = record_source(said.predicted_source, said.told());
   if (record_source(source_in(likelihood, said.predicted_cv)) == named)
     return weights;
   const auto best = std::max_element(weights.each.begin(), weights.each.end());

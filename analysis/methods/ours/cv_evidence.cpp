@@ -89,19 +89,81 @@ double sum_of(const std::vector<MismatchEvidence>& all) {
   return sum;
 }
 
+/// The noises that the benchmark leaves possible for the record of a CV.
+class RecordNoises {
+ public:
+  RecordNoises(const ModelErrors& model, const ScaleLikelihood& likelihood, bool rest)
+      : model_(model), base_(model.noise()), likelihood_(likelihood), rest_(rest) {}
+
+  static Eigen::MatrixXd stacked(const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& directions) {
+    Eigen::MatrixXd all(rows.rows() + directions.rows(), rows.cols());
+    all << rows, directions;
+    return all;
+  }
+
+  /// The likelihood of the first of the series under each model.
+  Eigen::ArrayXd log_likelihoods(const WhitenedProducts& sums) const {
+    const Eigen::ArrayXd& squares = sums.of(0, 0);
+    Eigen::ArrayXd all(squares.size());
+    for (Eigen::Index i = 0; i < all.size(); ++i)
+      all(i) = likelihood_(sums.log_determinant(i), squares(i));
+    return all;
+  }
+
+  /// Products of the series; the directions are integrated out.
+  static WhitenedProducts products(const NoiseModels& models, const Eigen::Ref<const Eigen::MatrixXd>& series,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& directions) {
+    return marginalised(whitened_products(models, stacked(series, directions)), series.rows(),
+                        directions.rows());
+  }
+
+  /// log of the mean likelihood of the first of the series over the noises that the benchmark leaves
+  /// possible, less that of the fitted one. `under` is told each set of noises and the products under them.
+  template <class Under>
+  double gain_of_other_noises(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                              const Eigen::Ref<const Eigen::MatrixXd>& directions, Under under) const {
+    if (model_.noises().possible.empty())
+      return 0.0;
+    double mean = -kInfinity;
+    for (const PossibleNoises& possible : model_.noises().possible) {
+      const NoiseModels models{possible.a, possible.b, possible.phi, rest_};
+      // Of many noises most are hopeless, which the first of the series alone shows.
+      const WeighedModels noises =
+          WeighedModels{models, possible.log_weight,
+                        log_likelihoods(whitened_products(models, series.topRows(1)))}
+              .within(kLost);
+      const WhitenedProducts sums = products(noises.models, series, directions);
+      under(noises, sums);
+      for (const double each : (noises.log_prior + log_likelihoods(sums)).eval())
+        mean = log_sum(mean, each);
+    }
+    return mean - under_fitted(series, directions);
+  }
+
+  /// log L of the first of the series under the fitted noise.
+  double under_fitted(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                      const Eigen::Ref<const Eigen::MatrixXd>& directions) const {
+    return log_likelihoods(products(base_models(base_, rest_).models, series.topRows(1), directions))(0);
+  }
+
+ protected:
+  const ModelErrors& model_;
+  const BaseNoise& base_;
+  ScaleLikelihood likelihood_;
+  bool rest_;
+};
+
 /// The work on one record.
-class RecordLikelihood {
+class RecordLikelihood : private RecordNoises {
  public:
   RecordLikelihood(const ModelErrors& model, const CvPrior& prior, const ScaleLikelihood& likelihood,
                    bool rest, const std::vector<MismatchResponses>& responses, const Eigen::RowVectorXd& e,
                    const Eigen::Ref<const Eigen::MatrixXd>& u,
                    const Eigen::Ref<const Eigen::VectorXd>& initial_u, Eigen::MatrixXd slopes,
                    JudgedMismatches judged)
-      : model_(model),
+      : RecordNoises(model, likelihood, rest),
         prior_(prior),
-        base_(model.noise()),
-        likelihood_(likelihood),
-        rest_(rest),
         responses_(responses),
         e_(e),
         u_(u),
@@ -167,56 +229,9 @@ class RecordLikelihood {
         model_.slopes(slopes_, {0, prior.channel.mv, prior.parameter, size}, u_, initial_u_));
   }
 
-  static Eigen::MatrixXd stacked(const Eigen::Ref<const Eigen::MatrixXd>& rows,
-                                 const Eigen::Ref<const Eigen::MatrixXd>& directions) {
-    Eigen::MatrixXd all(rows.rows() + directions.rows(), rows.cols());
-    all << rows, directions;
-    return all;
-  }
-
   WeighedModels scan(const Eigen::Ref<const Eigen::MatrixXd>& e,
                      const Eigen::Ref<const Eigen::MatrixXd>& directions) const {
     return scan_disturbances(prior_.disturbances, base_, rest_, likelihood_, stacked(e, directions));
-  }
-
-  /// The likelihood of the first of the series under each model.
-  Eigen::ArrayXd log_likelihoods(const WhitenedProducts& sums) const {
-    const Eigen::ArrayXd& squares = sums.of(0, 0);
-    Eigen::ArrayXd all(squares.size());
-    for (Eigen::Index i = 0; i < all.size(); ++i)
-      all(i) = likelihood_(sums.log_determinant(i), squares(i));
-    return all;
-  }
-
-  /// Products of the series; the directions are integrated out.
-  static WhitenedProducts products(const NoiseModels& models, const Eigen::Ref<const Eigen::MatrixXd>& series,
-                                   const Eigen::Ref<const Eigen::MatrixXd>& directions) {
-    return marginalised(whitened_products(models, stacked(series, directions)), series.rows(),
-                        directions.rows());
-  }
-
-  /// log of the mean likelihood of the first of the series over the noises that the benchmark leaves
-  /// possible, less that of the fitted one. `under` is told each set of noises and the products under them.
-  template <class Under>
-  double gain_of_other_noises(const Eigen::Ref<const Eigen::MatrixXd>& series,
-                              const Eigen::Ref<const Eigen::MatrixXd>& directions, Under under) const {
-    if (model_.noises().possible.empty())
-      return 0.0;
-    double mean = -kInfinity;
-    for (const PossibleNoises& possible : model_.noises().possible) {
-      const NoiseModels models{possible.a, possible.b, possible.phi, rest_};
-      // Of many noises most are hopeless, which the first of the series alone shows.
-      const WeighedModels noises =
-          WeighedModels{models, possible.log_weight,
-                        log_likelihoods(whitened_products(models, series.topRows(1)))}
-              .within(kLost);
-      const WhitenedProducts sums = products(noises.models, series, directions);
-      under(noises, sums);
-      for (const double each : (noises.log_prior + log_likelihoods(sums)).eval())
-        mean = log_sum(mean, each);
-    }
-    return mean -
-           log_likelihoods(products(base_models(base_, rest_).models, series.topRows(1), directions))(0);
   }
 
   /// The whitened series without the directions: of each the part that they cannot explain, in N + q numbers,
@@ -423,11 +438,7 @@ class RecordLikelihood {
     return all;
   }
 
-  const ModelErrors& model_;
   const CvPrior& prior_;
-  const BaseNoise& base_;
-  ScaleLikelihood likelihood_;
-  bool rest_;
   const std::vector<MismatchResponses>& responses_;
   const Eigen::RowVectorXd& e_;
   const Eigen::Ref<const Eigen::MatrixXd>& u_;
@@ -481,6 +492,14 @@ Eigen::MatrixXd CvLikelihood::healthy_series(const Eigen::Ref<const Eigen::RowVe
   Eigen::MatrixXd series(1 + directions.rows(), e.size());
   series << (e - model_.correction(inputs, initial)) / model_.noise().deviation, directions;
   return series;
+}
+
+double CvLikelihood::healthy_evidence(const Eigen::Ref<const Eigen::MatrixXd>& series) const {
+  const auto samples = static_cast<double>((!series.row(0).array().isNaN()).count());
+  const RecordNoises noises(model_, {freedom_, samples}, starts_from_rest_);
+  const auto directions = series.bottomRows(series.rows() - 1);
+  return noises.under_fitted(series, directions) +
+         noises.gain_of_other_noises(series.topRows(1), directions, [](const auto&, const auto&) {});
 }
 
 void CvLikelihood::add_growing(const Eigen::Ref<const Eigen::MatrixXd>& series,

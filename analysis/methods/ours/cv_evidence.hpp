@@ -11,6 +11,7 @@
 #include "analysis/methods/ours/model_errors.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "base/enum_words.hpp"
+#include "base/non_finite.hpp"
 
 namespace mpm {
 
@@ -27,6 +28,7 @@ struct CvEvidence {
   double healthy, mpm, ud, both;
   std::vector<MismatchEvidence> mismatch_alone, mismatch_with_disturbance;
   double disturbance_a, disturbance_b;  ///< of the best disturbance alone; b in CV units
+  double sensor = -kInfinity;           ///< of its sensor, where that was asked for
 };
 
 /// Which mismatches of a CV are judged under every noise that the benchmark leaves possible. Each of the
@@ -79,6 +81,10 @@ class CvLikelihood {
                                  const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                  const Eigen::Ref<const Eigen::VectorXd>& initial,
                                  const Eigen::Ref<const Eigen::MatrixXd>& untold) const;
+
+  /// The logarithm of the probability of such a series without a fault, in the measure of
+  /// CvEvidence::healthy: under every noise that the benchmark leaves possible.
+  double healthy_evidence(const Eigen::Ref<const Eigen::MatrixXd>& series) const;
 
   /// Adds to the evidence of mismatches that of growing_mismatches(), which are so probable among them as
   /// `share` against those of the whole record. `series` is healthy_series() with the same `untold`.

@@ -11,8 +11,11 @@
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/input_disturbance.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
-#include "analysis/methods/ours/sticky_valve_likelihood.hpp"
+#include "analysis/methods/ours/sensor_search.hpp"
+#include "analysis/methods/ours/sticky_valve_search.hpp"
+#include "analysis/methods/ours/whitened_errors.hpp"
 #include "analysis/statistics/best_candidate.hpp"
+#include "analysis/statistics/standstill.hpp"
 #include "analysis/statistics/truncated_normal.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
@@ -34,15 +37,16 @@ double healthy_evidence(const std::vector<CvEvidence>& evidence) {
 
 /// Logarithms of the weights of the faults of a CV against none.
 struct CvWeights {
-  double mpm, ud, both;
+  double mpm, ud, both, sensor;
 
-  double all() const { return log_sum(log_sum(mpm, ud), both); }
+  double all() const { return log_sum(log_sum(log_sum(mpm, ud), both), sensor); }
 };
 
 CvWeights weights_of_cv(const CvPrior& prior, const CvEvidence& evidence) {
   return {log_weight(prior.mpm, evidence.mpm, evidence.healthy),
           log_weight(prior.ud, evidence.ud, evidence.healthy),
-          log_weight(prior.both, evidence.both, evidence.healthy)};
+          log_weight(prior.both, evidence.both, evidence.healthy),
+          log_weight(prior.sensor, evidence.sensor, evidence.healthy)};
 }
 
 std::vector<CvWeights> weights_of(const FaultPriorSet& priors, const std::vector<CvEvidence>& evidence) {
@@ -57,6 +61,17 @@ double log_expm1(double x) {
   return x > 30.0 ? x + std::log1p(-std::exp(-x)) : std::log(std::expm1(x));
 }
 
+/// Of the faults of a CV, from the logarithm of the weight of all and of none; `log_odds` as said.
+FaultProbabilities::OfCv probabilities_of_cv(const CvWeights& cv, double log_total, double log_odds) {
+  const double sensor = std::exp(cv.sensor - log_total);
+  return {std::exp(cv.mpm - log_total),
+          std::exp(cv.ud - log_total),
+          std::exp(cv.both - log_total),
+          log_odds,
+          sensor,
+          sensor};
+}
+
 FaultProbabilities of_one_fault(const std::vector<CvWeights>& weights) {
   double total = 0.0;  // log of the weight of nothing
   for (const CvWeights& cv : weights)
@@ -68,11 +83,11 @@ FaultProbabilities of_one_fault(const std::vector<CvWeights>& weights) {
     for (std::size_t j = 0; j < weights.size(); ++j)
       if (j != i)
         others = log_sum(others, weights[j].all());
-    probabilities.cvs.push_back(
-        {std::exp(cv.mpm - total), std::exp(cv.ud - total), std::exp(cv.both - total), cv.all() - others});
+    probabilities.cvs.push_back(probabilities_of_cv(cv, total, cv.all() - others));
     probabilities.mpm += probabilities.cvs.back().mpm;
     probabilities.ud += probabilities.cvs.back().ud;
     probabilities.both += probabilities.cvs.back().both;
+    probabilities.other += probabilities.cvs.back().other;
     probabilities.log_odds = log_sum(probabilities.log_odds, cv.all());
   }
   return probabilities;
@@ -80,19 +95,21 @@ FaultProbabilities of_one_fault(const std::vector<CvWeights>& weights) {
 
 FaultProbabilities of_several_faults(const std::vector<CvWeights>& weights) {
   FaultProbabilities probabilities{};
-  double log_healthy = 0.0, log_no_disturbance = 0.0, log_no_mismatch = 0.0;
+  double log_healthy = 0.0, log_no_disturbance = 0.0, log_no_mismatch = 0.0, log_neither = 0.0;
   for (const CvWeights& cv : weights) {
-    const double total = log_sum(0.0, cv.all());
-    probabilities.cvs.push_back(
-        {std::exp(cv.mpm - total), std::exp(cv.ud - total), std::exp(cv.both - total), cv.all()});
+    const double total = log_sum(0.0, cv.all()), neither = log_sum(0.0, cv.sensor);
+    probabilities.cvs.push_back(probabilities_of_cv(cv, total, cv.all()));
     log_healthy -= total;
-    log_no_disturbance += log_sum(0.0, cv.mpm) - total;
-    log_no_mismatch += log_sum(0.0, cv.ud) - total;
+    log_neither += neither - total;
+    log_no_disturbance += log_sum(neither, cv.mpm) - total;
+    log_no_mismatch += log_sum(neither, cv.ud) - total;
   }
+  const double neither = std::exp(log_neither);
   probabilities.healthy = std::exp(log_healthy);
-  probabilities.mpm = std::exp(log_no_disturbance) - probabilities.healthy;
-  probabilities.ud = std::exp(log_no_mismatch) - probabilities.healthy;
-  probabilities.both = std::max(0.0, 1.0 - probabilities.healthy - probabilities.mpm - probabilities.ud);
+  probabilities.other = probabilities.sensor = neither - probabilities.healthy;
+  probabilities.mpm = std::exp(log_no_disturbance) - neither;
+  probabilities.ud = std::exp(log_no_mismatch) - neither;
+  probabilities.both = std::max(0.0, 1.0 - neither - probabilities.mpm - probabilities.ud);
   probabilities.log_odds = log_healthy < 0.0 ? log_expm1(-log_healthy) : -kInfinity;
   return probabilities;
 }
@@ -203,6 +220,11 @@ class FaultKnowledge {
             context.study, priors, context.study.assessment.of<LikelihoodOptions>().fault_probability,
             deviations(models_, context.correction != nullptr), context.correction != nullptr)) {
     const Study& study = context.study;
+    const Eigen::MatrixXd& d = context.benchmark->d;
+    md_noises_.resize(d.rows());
+    for (Eigen::Index md = 0; md < d.rows(); ++md)
+      md_noises_(md) =
+          std::max(deviation_of_steps(d.row(md)), kUnseen * (d.row(md).maxCoeff() - d.row(md).minCoeff()));
     if (priors == FaultPriors::study && !noise_is_known(study))
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
     if (const auto learnt = learnt_model(context); priors != FaultPriors::study && learnt)
@@ -222,6 +244,8 @@ class FaultKnowledge {
   const FaultPriorSet& priors() const { return priors_; }
   const FaultPriorSet& for_scores() const { return for_scores_; }
   const CvLikelihood& of(std::size_t cv) const { return *likelihoods_[cv]; }
+  /// Noise of an MD in the benchmark, or what of it would not be seen.
+  double md_noise(Eigen::Index md) const { return md_noises_(md); }
 
  private:
   static constexpr double kHalves = 2.0;  ///< of the benchmark in a record: log L grows with the samples
@@ -263,11 +287,16 @@ class FaultKnowledge {
       prior.mpm *= left;
       prior.ud *= left;
       prior.both *= left;
+      prior.sensor *= left;
       priors_.input *= left;
+      priors_.md *= left;
     }
   }
 
+  static constexpr double kUnseen = 1e-3;  ///< noise of an MD, over what it moves
+
   std::vector<ModelErrors> models_;
+  Eigen::VectorXd md_noises_;
   FaultPriorSet priors_, for_scores_;
   std::vector<std::unique_ptr<const CvLikelihood>> likelihoods_;
 };
@@ -281,8 +310,9 @@ class FaultPosterior final : public AssessmentMethod {
             fmt::format("priors {}", static_cast<int>(priors)),
             [&] { return std::make_shared<FaultKnowledge>(context, priors); })) {
     const FaultHypotheses asked = study_.assessment.of<LikelihoodOptions>().hypotheses;
+    is_learnt_ = priors != FaultPriors::study && context.correction;
     asks_more_ = priors != FaultPriors::study &&
-                 (asked == FaultHypotheses::all || (asked == FaultHypotheses::learnt && context.correction));
+                 (asked == FaultHypotheses::all || (asked == FaultHypotheses::learnt && is_learnt_));
   }
 
   Assessment assess(const AssessedLoop& loop) override {
@@ -305,18 +335,23 @@ class FaultPosterior final : public AssessmentMethod {
     if (!asks_more_ || !is_flagged(probabilities))
       return answer(probabilities, fault_probabilities(known_->for_scores(), evidence), evidence);
     const std::vector<Eigen::MatrixXd> series = healthy_series(loop, errors, inputs);
-    const double of_input = input_weight(evidence, series);
-    const StuckMv valve = stuck_mv(evidence, series, inputs);
+    const std::vector<WhitenedErrors> whitened = whitened_errors(series);
+    const InputWeights of_inputs = input_weights(evidence, series, whitened, inputs);
     for (std::size_t i = 0; i < known_->models().size(); ++i)
-      if (is_suspect(probabilities.cvs[i]))
+      if (is_suspect(probabilities.cvs[i])) {
         known_->of(i).add_growing(series[i], inputs.leftCols(series[i].cols()), initial_,
                                   untold_of(loop, static_cast<Eigen::Index>(i), series[i].cols()),
                                   kGrowingShare, evidence[i]);
+        evidence[i].sensor = sensor_evidence(loop, i, series, whitened);
+      }
     probabilities = with_sticky_valve(
-        with_input_disturbance(fault_probabilities(known_->priors(), evidence), of_input), valve.log_weight);
+        with_input_disturbance(fault_probabilities(known_->priors(), evidence), of_inputs.disturbance),
+        of_inputs.valve);
+    probabilities =
+        with_wrong_md(probabilities, md_weight(probabilities.log_odds, evidence, series, whitened, inputs));
     Assessment assessment = answer(probabilities, probabilities, evidence);
-    if (probabilities.other > 0.0)
-      assessment.numbers.push_back({"valve_mv", static_cast<double>(valve.mv)});
+    if (probabilities.other > probabilities.sensor)
+      assessment.numbers.push_back({"valve_mv", static_cast<double>(of_inputs.valve_mv)});
     return assessment;
   }
 
@@ -349,41 +384,108 @@ class FaultPosterior final : public AssessmentMethod {
     return series;
   }
 
-  /// log of the weight of a disturbance on some MV against nothing.
-  double input_weight(const std::vector<CvEvidence>& evidence,
-                      const std::vector<Eigen::MatrixXd>& series) const {
-    const double healthy = healthy_evidence(evidence);
-    const InputLikelihood likelihood(known_->models(), series, study_.controller.sample_time,
-                                     known_->priors().noise_freedom);
-    double sum = -kInfinity;
-    for (const InputEvidence& of_mv : likelihood.of_mvs(study_.mv_count()))
-      sum = log_sum(sum, log_weight(known_->priors().input, of_mv.log_evidence, healthy));
-    return sum;
+  std::vector<WhitenedErrors> whitened_errors(const std::vector<Eigen::MatrixXd>& series) const {
+    std::vector<WhitenedErrors> all;
+    for (std::size_t i = 0; i < series.size(); ++i)
+      all.emplace_back(known_->models()[i], series[i], known_->priors().noise_freedom);
+    return all;
   }
 
-  /// The MV whose valve most likely sticks, and log of the weight of a valve of some MV against nothing.
-  struct StuckMv {
-    double log_weight = -kInfinity;
-    std::size_t mv = 0;
+  /// What a fault around the model leaves of the CV in the place `cv` is as probable as in a healthy loop.
+  double evidence_with(const ExplainedErrors& fault, std::size_t cv, Eigen::MatrixXd series) const {
+    series.row(0) -= fault.of_cvs[cv];
+    return known_->of(cv).healthy_evidence(series);
+  }
+
+  /// log of the weight of such a fault against nothing.
+  double weight_of(const ExplainedErrors& fault, double prior, const std::vector<CvEvidence>& evidence,
+                   const std::vector<Eigen::MatrixXd>& series) const {
+    if (!fault.is_any())
+      return -kInfinity;
+    double gain = -fault.penalty;
+    for (std::size_t i = 0; i < series.size(); ++i)
+      if (fault.of_cvs[i].size() > 0)
+        gain += evidence_with(fault, i, series[i]) - evidence[i].healthy;
+    return log_weight(prior, gain, 0.0);
+  }
+
+  /// log of the weights of a disturbance on some MV, and of a valve that sticks, against nothing.
+  struct InputWeights {
+    double disturbance = -kInfinity, valve = -kInfinity;
+    std::size_t valve_mv = 0;  ///< the MV whose valve most likely sticks
   };
 
-  StuckMv stuck_mv(const std::vector<CvEvidence>& evidence, const std::vector<Eigen::MatrixXd>& series,
-                   const Eigen::MatrixXd& inputs) const {
-    const double healthy = healthy_evidence(evidence);
-    const std::vector<double> valves =
-        valve_log_evidence(known_->models(), series, inputs, initial_, study_.mv_count(),
-                           study_.controller.sample_time, known_->priors().noise_freedom);
-    StuckMv found;
-    for (std::size_t mv = 0; mv < valves.size(); ++mv) {
-      found.log_weight = log_sum(found.log_weight, log_weight(known_->priors().input, valves[mv], healthy));
-      if (valves[mv] > valves[found.mv])
-        found.mv = mv;
+  /// A valve that sticks disturbs its MV: valves are searched where a disturbance of the MV is not far behind
+  /// that of the best one.
+  InputWeights input_weights(const std::vector<CvEvidence>& evidence,
+                             const std::vector<Eigen::MatrixXd>& series,
+                             const std::vector<WhitenedErrors>& whitened,
+                             const Eigen::MatrixXd& inputs) const {
+    const double healthy = healthy_evidence(evidence), prior = known_->priors().input;
+    const InputLikelihood likelihood(known_->models(), series, study_.controller.sample_time,
+                                     known_->priors().noise_freedom);
+    const std::vector<InputEvidence> of_mvs = likelihood.of_mvs(study_.mv_count());
+    InputWeights found;
+    double most = -kInfinity;
+    for (std::size_t mv = 0; mv < of_mvs.size(); ++mv) {
+      found.disturbance = log_sum(found.disturbance, log_weight(prior, of_mvs[mv].log_evidence, healthy));
+      if (!(of_mvs[mv].log_evidence > -kInfinity))
+        continue;
+      const double valve =
+          weight_of(best_sticky_valve(known_->models(), whitened, inputs, initial_,
+                                      static_cast<Eigen::Index>(mv), study_.controller.sample_time),
+                    prior, evidence, series);
+      found.valve = log_sum(found.valve, valve);
+      if (valve > most) {
+        most = valve;
+        found.valve_mv = mv;
+      }
     }
     return found;
   }
 
+  /// log of the weight of a wrong measurement of some MD against nothing. Of its noise the record of the MD
+  /// speaks, whatever the errors of the CVs look like: it is `kOfNoisyMd` more probable than `log_odds`.
+  double md_weight(double log_odds, const std::vector<CvEvidence>& evidence,
+                   const std::vector<Eigen::MatrixXd>& series, const std::vector<WhitenedErrors>& whitened,
+                   const Eigen::MatrixXd& inputs) const {
+    const double sample_time = study_.controller.sample_time, prior = known_->priors().md;
+    double sum = -kInfinity;
+    for (Eigen::Index md = 0; md < study_.md_count(); ++md) {
+      const Eigen::Index input = study_.mv_count() + md;
+      sum = log_sum(sum, weight_of(best_md_gain(known_->models(), whitened, inputs, input, sample_time),
+                                   prior, evidence, series));
+      if (has_noisy_md(known_->models(), whitened, inputs, input, sample_time, known_->md_noise(md)))
+        sum = log_sum(sum, log_weight(prior, log_odds + kOfNoisyMd, 0.0));
+    }
+    return sum;
+  }
+
+  /// log of the probability of the errors of a CV whose sensor has a bias or a drift, or is stuck.
+  double sensor_evidence(const AssessedLoop& loop, std::size_t cv, const std::vector<Eigen::MatrixXd>& series,
+                         const std::vector<WhitenedErrors>& whitened) const {
+    const ExplainedErrors fault = best_sensor_error(whitened, cv);
+    const double of_error =
+        fault.is_any() ? evidence_with(fault, cv, series[cv]) - fault.penalty : -kInfinity;
+    const Standstill stretch = longest_standstill(loop.y.row(static_cast<Eigen::Index>(cv)));
+    if (!is_long(stretch, loop.samples()) || !(stretch.chance < kNoChance))
+      return of_error;
+    Eigen::MatrixXd without = series[cv];
+    without.row(0).segment(loop.first + stretch.first, stretch.length()).setConstant(kNaN);
+    if (without.row(0).array().isNaN().all())
+      return of_error;
+    return log_sum(of_error, known_->of(cv).healthy_evidence(without) +
+                                 kOfStuckSample * static_cast<double>(stretch.length()));
+  }
+
   static constexpr double kGrowingShare = 0.5;  ///< of mismatches that grow, against those that do not
   static constexpr double kSuspect = 1e-3;      ///< probability from which a CV is looked at more closely
+  /// A sensor shows one value for so long that chance does not make it (Standstill::chance).
+  static constexpr double kNoChance = 1e-6;
+  /// log of the density of a sample of a stuck sensor, in deviations of the noise: it is known to a
+  /// twentieth.
+  static constexpr double kOfStuckSample = 3.0;
+  static constexpr double kOfNoisyMd = 10.0;
 
   Assessment answer(const FaultProbabilities& probabilities, const FaultProbabilities& scores,
                     const std::vector<CvEvidence>& evidence) const {
@@ -400,7 +502,8 @@ class FaultPosterior final : public AssessmentMethod {
       if (cv.flagged == true || worst == static_cast<Eigen::Index>(i))
         cv.source = most_probable_source(probabilities.cvs[i], options.source_probability);
       if (cv.source == FaultSource::other)
-        cv.about = ToldSource::valve;  // the only one among its hypotheses
+        cv.about = probabilities.cvs[i].sensor > 0.5 * probabilities.cvs[i].other ? ToldSource::sensor
+                                                                                  : ToldSource::valve;
       name_mismatch(i, cv.source, evidence[i], worst == static_cast<Eigen::Index>(i), assessment);
     }
     add_numbers(probabilities, evidence, worst, assessment);
@@ -439,13 +542,24 @@ class FaultPosterior final : public AssessmentMethod {
     return sizes;
   }
 
+  /// Where errors of the model are learnt, by what was true in loops in which the same was seen.
+  SourceProbabilities stated_of(const FaultProbabilities& probabilities) const {
+    const SourceProbabilities seen{probabilities.healthy, probabilities.mpm, probabilities.ud,
+                                   probabilities.both, probabilities.other};
+    if (!is_learnt_)
+      return seen;
+    SourceProbabilities stated{};
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      for (std::size_t truth = 0; truth < stated.size(); ++truth)
+        stated[truth] += seen[i] * true_sources(static_cast<FaultSource>(i))[truth];
+    return stated;
+  }
+
   void add_numbers(const FaultProbabilities& probabilities, const std::vector<CvEvidence>& evidence,
                    std::optional<Eigen::Index> worst, Assessment& assessment) const {
-    assessment.numbers = {{"p_healthy", probabilities.healthy},
-                          {"p_mpm", probabilities.mpm},
-                          {"p_ud", probabilities.ud},
-                          {"p_both", probabilities.both},
-                          {"p_other", probabilities.other}};
+    assessment.numbers = {{"p_healthy", probabilities.healthy}, {"p_mpm", probabilities.mpm},
+                          {"p_ud", probabilities.ud},           {"p_both", probabilities.both},
+                          {"p_other", probabilities.other},     {"p_sensor", probabilities.sensor}};
     for (std::size_t i = 0; i < probabilities.cvs.size(); ++i) {
       const auto cv = static_cast<Eigen::Index>(i);
       const FaultProbabilities::OfCv& of_cv = probabilities.cvs[i];
@@ -466,6 +580,7 @@ class FaultPosterior final : public AssessmentMethod {
   const Study& study_;
   Eigen::VectorXd initial_;
   std::shared_ptr<const FaultKnowledge> known_;
+  bool is_learnt_ = false;  ///< errors of the model are
   bool asks_more_ = false;  ///< beside the basic hypotheses
 };
 
@@ -478,24 +593,28 @@ FaultProbabilities fault_probabilities(const FaultPriorSet& priors, const std::v
 
 namespace {
 
-/// The weight of a further fault of the loop, of the source `of_loop` and `of_cv`.
-FaultProbabilities with_fault_of_mv(FaultProbabilities probabilities, double log_weight,
-                                    double FaultProbabilities::*of_loop,
-                                    double FaultProbabilities::OfCv::*of_cv) {
+using LoopShares = std::vector<double FaultProbabilities::*>;
+using CvShares = std::vector<double FaultProbabilities::OfCv::*>;
+
+/// The weight of a further fault of the loop, which counts in `of_loop` and `of_cv`.
+FaultProbabilities with_fault_of_input(FaultProbabilities probabilities, double log_weight,
+                                       const LoopShares& of_loop, const CvShares& of_cv) {
   const double share = std::exp(log_weight - log_sum(log_sum(0.0, probabilities.log_odds), log_weight));
   for (double FaultProbabilities::*each :
        {&FaultProbabilities::healthy, &FaultProbabilities::mpm, &FaultProbabilities::ud,
-        &FaultProbabilities::both, &FaultProbabilities::other})
+        &FaultProbabilities::both, &FaultProbabilities::other, &FaultProbabilities::sensor})
     probabilities.*each *= 1.0 - share;
-  probabilities.*of_loop += share;
+  for (double FaultProbabilities::*each : of_loop)
+    probabilities.*each += share;
   probabilities.log_odds = log_sum(probabilities.log_odds, log_weight);
   for (FaultProbabilities::OfCv& cv : probabilities.cvs) {
     const double fault = cv.fault();
     for (double FaultProbabilities::OfCv::*each :
          {&FaultProbabilities::OfCv::mpm, &FaultProbabilities::OfCv::ud, &FaultProbabilities::OfCv::both,
-          &FaultProbabilities::OfCv::other})
+          &FaultProbabilities::OfCv::other, &FaultProbabilities::OfCv::sensor})
       cv.*each *= 1.0 - share;
-    cv.*of_cv += share * fault;
+    for (double FaultProbabilities::OfCv::*each : of_cv)
+      cv.*each += share * fault;
   }
   return probabilities;
 }
@@ -503,13 +622,31 @@ FaultProbabilities with_fault_of_mv(FaultProbabilities probabilities, double log
 }  // namespace
 
 FaultProbabilities with_input_disturbance(FaultProbabilities probabilities, double log_weight) {
-  return with_fault_of_mv(std::move(probabilities), log_weight, &FaultProbabilities::ud,
-                          &FaultProbabilities::OfCv::ud);
+  return with_fault_of_input(std::move(probabilities), log_weight, {&FaultProbabilities::ud},
+                             {&FaultProbabilities::OfCv::ud});
 }
 
 FaultProbabilities with_sticky_valve(FaultProbabilities probabilities, double log_weight) {
-  return with_fault_of_mv(std::move(probabilities), log_weight, &FaultProbabilities::other,
-                          &FaultProbabilities::OfCv::other);
+  return with_fault_of_input(std::move(probabilities), log_weight, {&FaultProbabilities::other},
+                             {&FaultProbabilities::OfCv::other});
+}
+
+FaultProbabilities with_wrong_md(FaultProbabilities probabilities, double log_weight) {
+  return with_fault_of_input(std::move(probabilities), log_weight,
+                             {&FaultProbabilities::other, &FaultProbabilities::sensor},
+                             {&FaultProbabilities::OfCv::other, &FaultProbabilities::OfCv::sensor});
+}
+
+const SourceProbabilities& true_sources(FaultSource seen) {
+  // none, mpm, ud, mpm_ud, other
+  static constexpr std::array<SourceProbabilities, kWords<FaultSource>.size()> kTrue{{
+      {0.905, 0.060, 0.010, 0.005, 0.020},
+      {0.060, 0.920, 0.005, 0.005, 0.010},
+      {0.070, 0.015, 0.875, 0.010, 0.030},
+      {0.060, 0.420, 0.370, 0.120, 0.030},
+      {0.010, 0.005, 0.020, 0.005, 0.960},
+  }};
+  return kTrue[static_cast<std::size_t>(seen)];
 }
 
 std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& context, FaultPriors priors) {
@@ -517,19 +654,20 @@ std::unique_ptr<AssessmentMethod> make_fault_posterior(const AssessmentContext& 
 }
 
 std::vector<AssessmentNumberInfo> fault_posterior_numbers() {
-  return {{"p_healthy", NumberScope::loop, "probability, given the record, that nothing is wrong"},
-          {"p_mpm", NumberScope::loop, "probability of mismatches alone"},
-          {"p_ud", NumberScope::loop, "probability of disturbances alone"},
-          {"p_both", NumberScope::loop, "probability of mismatches and disturbances"},
-          {"p_other", NumberScope::loop, "probability that a valve sticks"},
-          {"valve_mv", NumberScope::loop, "place of the MV whose valve that most likely is, from 0"},
-          {"ud_gain", NumberScope::loop, "gain of G_d of the likeliest disturbance alone on the worst CV",
-           "CV unit"},
-          {"ud_time_constant", NumberScope::loop, "its time constant", "time unit of the plant"},
-          {"cv_p_mpm", NumberScope::cv, "probability that the CV has a mismatch alone"},
-          {"cv_p_ud", NumberScope::cv, "probability that it has a disturbance alone"},
-          {"cv_p_both", NumberScope::cv, "probability that it has both"},
-          {"cv_p_other", NumberScope::cv, "probability that a valve that sticks shows in it"}};
+  std::vector<AssessmentNumberInfo> numbers = source_probability_numbers();
+  const std::vector<AssessmentNumberInfo> further{
+      {"p_sensor", NumberScope::loop,
+       "part of p_other of sensors: of a CV with a bias, a drift or a standstill, or of an MD"},
+      {"valve_mv", NumberScope::loop, "place of the MV whose valve that most likely is, from 0"},
+      {"ud_gain", NumberScope::loop, "gain of G_d of the likeliest disturbance alone on the worst CV",
+       "CV unit"},
+      {"ud_time_constant", NumberScope::loop, "its time constant", "time unit of the plant"},
+      {"cv_p_mpm", NumberScope::cv, "probability that the CV has a mismatch alone"},
+      {"cv_p_ud", NumberScope::cv, "probability that it has a disturbance alone"},
+      {"cv_p_both", NumberScope::cv, "probability that it has both"},
+      {"cv_p_other", NumberScope::cv, "probability that a valve that sticks or a sensor shows in it"}};
+  numbers.insert(numbers.end(), further.begin(), further.end());
+  return numbers;
 }
 
 }  // namespace mpm

@@ -24,7 +24,8 @@ constexpr double kBeyond = 1.1;  // of the largest factor, where the model has e
 constexpr double kSmallestDisturbance = 0.1, kLargestDisturbance = 1000.0;
 /// Of mismatch, disturbance and both, when there is a fault.
 constexpr std::array kWideShares{0.4, 0.4, 0.2};
-constexpr double kInputShare = 0.2;  // of a disturbance on an MV, against the others
+constexpr double kInputShare = 0.2;   // of a disturbance on an MV, against the others
+constexpr double kSensorShare = 0.2;  // of a sensor of a CV, and of one of an MD
 /// Standard deviation of the logarithm of the variance of the noise about that of the benchmark: 0.7, or a
 /// factor of 1.4 in the standard deviation.
 constexpr double kWideFreedom = 4.0;
@@ -188,9 +189,11 @@ double freedom_of(const Distribution& factor) {
   return variance > 0.0 ? 2.0 / variance : kInfinity;
 }
 
-/// A disturbance on some MV is as probable as all faults of CVs are, times its share.
-double input_weight(const Study& study, double fault_probability) {
-  return kInputShare * fault_probability / (1.0 - fault_probability) / static_cast<double>(study.mv_count());
+/// A fault of one of `count` inputs, where one of some input is as probable as all faults of CVs are, times
+/// its share.
+double input_weight(double share, double fault_probability, Eigen::Index count) {
+  return count == 0 ? 0.0
+                    : share * fault_probability / (1.0 - fault_probability) / static_cast<double>(count);
 }
 
 /// The weights of the kinds of a study against its loops without a fault. The basis case is one of these, so
@@ -240,7 +243,8 @@ FaultPriorSet fault_priors(const Study& study, FaultPriors priors, double fault_
                            const Eigen::Ref<const Eigen::VectorXd>& noise, bool imperfect) {
   const bool drawn = priors == FaultPriors::study && !study.names_scenarios();
   FaultPriorSet set{{},
-                    drawn ? 0.0 : input_weight(study, fault_probability),
+                    drawn ? 0.0 : input_weight(kInputShare, fault_probability, study.mv_count()),
+                    drawn ? 0.0 : input_weight(kSensorShare, fault_probability, study.md_count()),
                     drawn && draws_one_fault(study),
                     drawn ? freedom_of(study.simulation.noise.factor) : kWideFreedom,
                     drawn};
@@ -254,6 +258,7 @@ FaultPriorSet fault_priors(const Study& study, FaultPriors priors, double fault_
       prior.mpm = odds * kWideShares[0];
       prior.ud = odds * kWideShares[1];
       prior.both = odds * kWideShares[2];
+      prior.sensor = odds * kSensorShare;
     }
     prior.mismatches = mismatches_of(study, used, cv, imperfect);
     prior.disturbances = disturbances_of(study, used, noise(cv), imperfect);

@@ -49,6 +49,7 @@ struct CvPrior {
   double mpm, ud, both;               ///< weights against 1 for nothing
   std::vector<SizePrior> mismatches;  ///< their weights sum to 1, if there is one
   std::vector<DisturbancePrior> disturbances;
+  double sensor = 0.0;  ///< weight of its sensor, against 1 for nothing; of wide priors
 };
 
 /// | `priors` | faults                                 | sizes                       | noise           |
@@ -60,8 +61,10 @@ struct CvPrior {
 /// benchmark is known within a factor of about two.
 struct FaultPriorSet {
   std::vector<CvPrior> cvs;  ///< ny
-  double input = 0.0;        ///< weight of a disturbance on each MV, against 1 for nothing; of wide priors
-  bool one_fault = false;    ///< only one CV has a fault; otherwise each CV may, independently of the others
+  /// Weights against 1 for nothing, of wide priors: of a disturbance on each MV, of a valve of each that
+  /// sticks, and of a wrong measurement of each MD.
+  double input = 0.0, md = 0.0;
+  bool one_fault = false;  ///< only one CV has a fault; otherwise each CV may, independently of the others
   /// nu of the scaled inverse chi-square distribution of the variance of the noise about the known one;
   /// infinity: it is known.
   double noise_freedom;

@@ -13,6 +13,7 @@
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/disturbance_scan.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
+#include "analysis/methods/ours/whitened_errors.hpp"
 #include "analysis/statistics/chi_squared.hpp"
 #include "base/non_finite.hpp"
 
@@ -168,8 +169,11 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
                          const Eigen::Ref<const Eigen::RowVectorXd>& e,
                          const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                          const Eigen::Ref<const Eigen::VectorXd>& initial, double least,
-                         const std::optional<BaseNoise>& known)
+                         const std::optional<BaseNoise>& known, double late)
     : ModelErrors(study, cv, known.value_or(BaseNoise{})) {
+  for (Eigen::Index input = 0; late != 0.0 && input < nominal_.cols(); ++input)
+    if (const TransferFunction& channel = nominal_(0, input); !channel.is_zero())
+      late_(0, input) = with_error(channel, {input, MismatchParameter::dead_time, 1.0}, late);
   bias_ = prior.bias;
   errors_ = prior.channels;
   const auto p = static_cast<Eigen::Index>(errors_.size());
@@ -178,12 +182,12 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
   Eigen::MatrixXd series;
   corner_ = std::max<Eigen::Index>(2, e.size() / kCorners);
   mean_ = Eigen::VectorXd::Zero(p);
-  take(nominal_);
+  take(late_);
   Eigen::VectorXd least_errors = Eigen::VectorXd::Constant(p, -kInfinity);  // no dead time is negative
   for (Eigen::Index i = 0; i < p; ++i)
     if (const ChannelError& error = errors_[static_cast<std::size_t>(i)];
         error.parameter == MismatchParameter::dead_time)
-      least_errors(i) = -nominal_(0, error.input).dead_time() / error.deviation;
+      least_errors(i) = -late_(0, error.input).dead_time() / error.deviation;
   Eigen::MatrixXd covariance;
   // Gauss and Newton: where outputs move by a hundred times the noise, a slope is not enough.
   for (int step = 0; step < kGaussNewtonSteps; ++step) {
@@ -209,7 +213,7 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const BaseNoise& n
     : sample_time_(study.controller.sample_time), nominal_(1, study.plant.G.cols()), noise_{noise, {}} {
   for (Eigen::Index input = 0; input < nominal_.cols(); ++input)
     nominal_(0, input) = study.assessed_channel(cv, input);
-  model_ = nominal_;
+  late_ = model_ = nominal_;
 }
 
 Eigen::RowVectorXd ModelErrors::correction(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
@@ -333,7 +337,7 @@ ModelErrors::Slope ModelErrors::slope_of(const TransferMatrix& model, const Chan
 }
 
 TransferMatrix ModelErrors::with_errors(const Eigen::Ref<const Eigen::VectorXd>& z) const {
-  TransferMatrix model = nominal_;
+  TransferMatrix model = late_;
   for (std::size_t i = 0; i < errors_.size(); ++i)
     model(0, errors_[i].input) = with_error(model(0, errors_[i].input), errors_[i],
                                             errors_[i].deviation * z(static_cast<Eigen::Index>(i)));
@@ -360,11 +364,58 @@ LearntModel::LearntModel(const Study& study, const Eigen::Ref<const Eigen::Vecto
                          const AssessedLoop& benchmark, double share, double bias)
     : share_(share), bias_(bias), initial_(Eigen::VectorXd::Zero(study.plant.G.cols())) {
   initial_.head(initial_u.size()) = initial_u;
+  cvs_ = errors_of(study, benchmark, 0.0);
+  if (!(gain_of_lateness(benchmark) > kSpeaksForLate))
+    return;
+  const auto evidence = [](const std::vector<ModelErrors>& cvs) {
+    double sum = 0.0;
+    for (const ModelErrors& cv : cvs)
+      sum += cv.noises().log_evidence;
+    return sum;
+  };
+  double most = evidence(cvs_) + kSpeaksForLate;
+  for (const double samples : {-1.0, -0.5, 0.5, 1.0}) {
+    const double late = samples * study.controller.sample_time;
+    std::vector<ModelErrors> tried = errors_of(study, benchmark, late);
+    if (const double found = evidence(tried); found > most) {
+      most = found;
+      late_ = late;
+      cvs_ = std::move(tried);
+    }
+  }
+}
+
+double LearntModel::gain_of_lateness(const AssessedLoop& benchmark) const {
+  const AssessedLoop& whole = benchmark.from_start();
+  const Eigen::MatrixXd inputs = model_inputs(whole);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < cvs_.size(); ++i) {
+    const ModelErrors& errors = cvs_[i];
+    const auto cv = static_cast<Eigen::Index>(i);
+    const Eigen::RowVectorXd correction = errors.correction(inputs, initial_);
+    const Eigen::MatrixXd directions = errors.directions(errors.slopes(inputs, initial_));
+    Eigen::MatrixXd series(1 + directions.rows(), directions.cols());
+    series << (errors_in_window(benchmark, cv) - correction) / errors.noise().deviation, directions;
+    const Eigen::RowVectorXd y = whole.y_sim.row(cv) + correction;
+    Eigen::RowVectorXd moves = Eigen::RowVectorXd::Zero(y.size());
+    moves.tail(y.size() - 1) = y.tail(y.size() - 1) - y.head(y.size() - 1);
+    const auto [product, squares] =
+        WhitenedErrors(errors, series, kInfinity).amplitude(moves / errors.noise().deviation);
+    sum += squares > 0.0 ? 0.5 * product * product / squares : 0.0;
+  }
+  return sum;
+}
+
+std::vector<ModelErrors> LearntModel::errors_of(const Study& study, const AssessedLoop& benchmark,
+                                                double late) const {
   // Of a window the inputs before it are known, too.
   const AssessedLoop& whole = benchmark.from_start();
+  std::vector<ModelErrors> cvs;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    cvs_.emplace_back(study, cv, relative_errors(study, cv, share, bias), errors_in_window(benchmark, cv),
-                      model_inputs(whole), initial_, least_noise(benchmark.y_sim.row(cv)));
+    cvs.emplace_back(study, cv, relative_errors(study, cv, share_, bias_), errors_in_window(benchmark, cv),
+                     model_inputs(whole), initial_, least_noise(benchmark.y_sim.row(cv)),
+                     std::optional<BaseNoise>(), late);
+  return cvs;
 }
 
 std::optional<ModelErrors> LearntModel::of_part(const Study& study, const AssessedLoop& benchmark,
@@ -377,7 +428,8 @@ std::optional<ModelErrors> LearntModel::of_part(const Study& study, const Assess
   if ((!e.array().isNaN()).count() < kFewestNoiseSamples)
     return std::nullopt;
   return ModelErrors(study, cv, relative_errors(study, cv, share_, bias_), e,
-                     model_inputs(benchmark.from_start()), initial_, least_noise(benchmark.y_sim.row(cv)));
+                     model_inputs(benchmark.from_start()), initial_, least_noise(benchmark.y_sim.row(cv)), {},
+                     late_);
 }
 
 std::optional<Eigen::Index> LearntModel::rejects_exact_model() const {

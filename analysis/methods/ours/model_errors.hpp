@@ -54,12 +54,12 @@ class ModelErrors {
  public:
   /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample, `inputs` (nu + nd x N)
   /// with `initial` (nu + nd) before them what moved the model. The noise is that which is `known`, or is
-  /// learnt with a deviation of `least` or more. Throws InputError for fewer than
-  /// kFewestNoiseSamples samples.
+  /// learnt with a deviation of `least` or more. The errors are those of a model whose channels all have a
+  /// dead time that is longer by `late`. Throws InputError for fewer than kFewestNoiseSamples samples.
   ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPrior& prior,
               const Eigen::Ref<const Eigen::RowVectorXd>& e, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
               const Eigen::Ref<const Eigen::VectorXd>& initial, double least,
-              const std::optional<BaseNoise>& known = {});
+              const std::optional<BaseNoise>& known = {}, double late = 0.0);
   /// Of a model without errors, under this noise.
   ModelErrors(const Study& study, Eigen::Index cv, const BaseNoise& noise);
 
@@ -70,7 +70,7 @@ class ModelErrors {
   /// Does the benchmark speak against a model without errors? It does where errors wander, or where the
   /// score test of delta = 0 rejects: b = S' R^-1 e, with the noise and the constant taken out of both, is
   /// N(0, S' R^-1 S) without errors, and b' (S' R^-1 S)^-1 b chi squared.
-  bool rejects_exact_model() const { return wanders() || exact_p_ < kRejectsExact; }
+  bool rejects_exact_model() const { return wanders() || !(late_ == nominal_) || exact_p_ < kRejectsExact; }
   /// Whether errors change along a healthy record, as those of a nonlinear plant do.
   bool wanders() const { return wander_ > 0.0; }
   /// Whether the benchmark shows more than a background beside the errors, so that these may be others than
@@ -128,15 +128,18 @@ class ModelErrors {
   double wander_ = 0.0;      ///< deviation of each gain at a corner; 0: none wanders
   Eigen::Index corner_ = 1;  ///< samples between corners
   std::vector<ChannelError> errors_;
-  TransferMatrix nominal_, model_;  ///< 1 x (nu + nd)
-  Eigen::VectorXd mean_;            ///< of the errors, over their D
+  TransferMatrix nominal_, late_, model_;  ///< 1 x (nu + nd): as it is, late, and corrected
+  Eigen::VectorXd mean_;                   ///< of the errors, over their D
   NoisePosterior noise_;
   Eigen::MatrixXd factor_;  ///< p x p: factor factor' is the covariance of the errors over their D
   double exact_p_ = 1.0;    ///< p-value of a model without errors
   std::vector<Slope> slopes_, corrected_;  ///< of each error; of each channel that is corrected
 };
 
-/// The model of all CVs with its errors, as the benchmark of a loop shows them.
+/// The model of all CVs with its errors, as the benchmark of a loop shows them. The clock of the record may
+/// be another one than that of the model: where the errors of some CV are more than a background, models are
+/// tried whose outputs are half a sample or a sample early or late, the same for all CVs, and the most
+/// probable one is corrected.
 class LearntModel final : public ModelCorrection {
  public:
   /// Priors of relative_errors(). Throws InputError as ModelErrors.
@@ -144,6 +147,8 @@ class LearntModel final : public ModelCorrection {
               const AssessedLoop& benchmark, double share, double bias);
 
   const ModelErrors& of(Eigen::Index cv) const { return cvs_[static_cast<std::size_t>(cv)]; }
+  /// By how much the outputs of the model are late, in the time unit of the plant; below 0: early.
+  double late() const { return late_; }
   /// The first CV whose benchmark rejects an exact model; none where no CV's does.
   std::optional<Eigen::Index> rejects_exact_model() const;
   /// The same from the samples of the benchmark whose place `uses` is true for; none where they are too few.
@@ -157,7 +162,13 @@ class LearntModel final : public ModelCorrection {
  private:
   Eigen::MatrixXd explained(const AssessedLoop& loop) const;
 
-  double share_, bias_;
+  static constexpr double kSpeaksForLate = 6.0;  ///< gain of log L
+
+  /// log L that outputs of each CV which are early or late would bring, to the first order.
+  double gain_of_lateness(const AssessedLoop& benchmark) const;
+  std::vector<ModelErrors> errors_of(const Study& study, const AssessedLoop& benchmark, double late) const;
+
+  double share_, bias_, late_ = 0.0;
   Eigen::VectorXd initial_;
   std::vector<ModelErrors> cvs_;
 };

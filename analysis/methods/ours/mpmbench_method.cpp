@@ -10,6 +10,7 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/counterfactual_loop.hpp"
+#include "analysis/methods/ours/fault_posterior.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/model_errors.hpp"
 #include "analysis/methods/source_probabilities.hpp"
@@ -47,9 +48,10 @@ enum class WithoutPart : std::int8_t { none, order, likelihood, other, quiet };
 /// Which channel, which parameter, how large, or which valve? `likelihood`, where the source is a mismatch,
 /// or a valve that sticks.
 ///
-/// How probable? The posterior of `likelihood`, whatever the loop costs. Where the verdict overrules it, the
-/// probabilities of its likeliest source and of the one that is named change places; where the data cannot
-/// tell, mismatch and disturbance have half of their sum each.
+/// How probable? What `likelihood` states, whatever the loop costs. Where the verdict overrules it, what is
+/// true where the evidence speaks for the source that is named (true_sources()), or, of a model without
+/// learnt errors, the probabilities of its likeliest source and of this one change places; where the data
+/// cannot tell, mismatch and disturbance have half of their sum each.
 ///
 /// docs/methods.md has the figures from which the choice was made.
 class Mpmbench final : public AssessmentMethod {
@@ -87,7 +89,7 @@ class Mpmbench final : public AssessmentMethod {
       cv.flagged = false;
   }
 
-  static void state_probabilities(const Assessment& posterior, Assessment& assessment) {
+  void state_probabilities(const Assessment& posterior, Assessment& assessment) const {
     if (posterior.status != AssessmentStatus::ok)
       return;
     SourceProbabilities p;
@@ -98,7 +100,10 @@ class Mpmbench final : public AssessmentMethod {
       const FaultSource named = assessment.cvs[cv].source;
       if (named == FaultSource::none)
         share_between_mismatch_and_disturbance(p);
-      else if (!posterior.flagged || named != posterior.cvs[cv].source)
+      else if (const bool overrules = !posterior.flagged || named != posterior.cvs[cv].source;
+               overrules && learnt_)
+        p = true_sources(named);
+      else if (overrules)
         std::swap(p[static_cast<std::size_t>(named)], *std::max_element(p.begin(), p.end()));
     }
     for (std::size_t i = 0; i < p.size(); ++i)
@@ -145,10 +150,10 @@ class Mpmbench final : public AssessmentMethod {
       return;
     const FaultSource source = agreed_source(posterior, order, *worst);
     assessment.cvs[static_cast<std::size_t>(*worst)].source = source;
-    if (const double valve = posterior.number("valve_mv");
-        source == FaultSource::other && !std::isnan(valve)) {
-      assessment.cvs[static_cast<std::size_t>(*worst)].about = ToldSource::valve;
-      assessment.numbers.push_back({"valve_mv", valve});
+    if (source == FaultSource::other) {
+      const double valve = posterior.number("valve_mv");
+      if (assessment.cvs[static_cast<std::size_t>(*worst)].about == ToldSource::valve && !std::isnan(valve))
+        assessment.numbers.push_back({"valve_mv", valve});
     }
     if (posterior.status != AssessmentStatus::ok ||
         (source != FaultSource::mpm && source != FaultSource::mpm_ud))

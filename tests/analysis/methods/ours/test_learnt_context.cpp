@@ -58,4 +58,24 @@ TEST_CASE("the plant and its benchmark decide whether the model is taken for exa
   CHECK_FALSE(assumed(program, of_tank).corrects);
 }
 
+TEST_CASE("the benchmark says by how much the outputs are early or late, and the model follows") {
+  for (const double shift : {0.0, 1.0, -1.0}) {
+    Study study = find_study("wood-berry");
+    study.assessment.model = AssessmentModel::benchmark;
+    study.record.cv_shift = std::vector<double>(2, shift);
+    const BasisCase basis = run_basis_case(study, testing::kFactory);
+    const std::shared_ptr<const LearntModel> learnt =
+        learnt_model(assessment_context(study, basis, testing::kFactory));
+    INFO("rows early by " << shift << " samples");
+    REQUIRE(learnt);
+    CHECK(learnt->late() == -shift * study.controller.sample_time);
+    for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv) {
+      CHECK(learnt->of(cv).rejects_exact_model() == (shift != 0.0));
+      for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
+        CHECK(learnt->of(cv).model()(0, mv).dead_time() ==
+              Approx(study.plant.G(cv, mv).dead_time() + learnt->late()).margin(0.2));
+    }
+  }
+}
+
 }  // namespace mpm

@@ -45,13 +45,18 @@ TEST_CASE("the likelihood names a valve that sticks, and only such a one", "[val
   };
   const double range = study.controller.mv_hard.upper(0) - study.controller.mv_hard.lower(0);
   REQUIRE(std::isfinite(range));
+  struct Tried {
+    OtherFaultKind kind;
+    double jump;
+  };
   for (const Eigen::Index mv : {0, 1})
-    for (const double jump : {0.0, 0.7}) {
+    for (const auto& [kind, jump] :
+         {Tried{OtherFaultKind::deadband, 0.0}, Tried{OtherFaultKind::stiction, 0.7},
+          Tried{OtherFaultKind::stick_slip, 0.0}, Tried{OtherFaultKind::friction, 0.5}}) {
       ExperimentDraw sticks = draw_of(ExperimentKind::other, 3);
-      sticks.other = OtherFault{jump > 0.0 ? OtherFaultKind::stiction : OtherFaultKind::deadband, mv,
-                                0.1 * range, jump * 0.1 * range};
+      sticks.other = OtherFault{kind, mv, 0.1 * range, jump * 0.1 * range, 0.4};
       const AssessmentRecord answer = said(sticks);
-      INFO("MV " << mv << ", J " << jump);
+      INFO("MV " << mv << ", " << to_string(kind));
       CHECK(answer.flagged);
       CHECK(answer.number("p_other") > 0.9);
       CHECK(answer.number("valve_mv") == static_cast<double>(mv));

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "analysis/methods/ours/explained_errors.hpp"
+#include "analysis/methods/ours/model_errors.hpp"
+#include "analysis/methods/ours/whitened_errors.hpp"
+
+namespace mpm {
+
+/// The valve that explains the simulation errors best if that of the MV in the place `mv` sticks. It moves
+/// all CVs by what it does not do of what is asked for,
+///
+///   e_i = G0_ij x + Z_i' z_i + n_i,   x(k) = valve(u_j(0 ... k)) - u_j(k),   z_i ~ N(0, I),
+///
+/// with a StickyValve (S, J) or a FrictionValve (f_S, f_D). The likelihood is that of `errors`, one a CV. Of
+/// a grid of S and J/S, or f_S and f_D/f_S, the first look takes valves that stick from the start, and the
+/// gains of the samples say from where on the best onset leaves them out; the best few are searched further
+/// with the onset and the place of the stem at the onset free. They have four parameters, and n is the number
+/// of samples of the CVs that the MV moves.
+///
+/// | symbol | name    | shape       |
+/// |--------|---------|-------------|
+/// | u      | inputs  | nu + nd x N |
+///
+/// Nothing is found where the MV moves no CV or does not move.
+ExplainedErrors best_sticky_valve(const std::vector<ModelErrors>& models,
+                                  const std::vector<WhitenedErrors>& errors,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                  const Eigen::Ref<const Eigen::VectorXd>& initial, Eigen::Index mv,
+                                  double sample_time);
+
+}  // namespace mpm
