@@ -84,9 +84,7 @@ std::optional<AssessmentMethodInfo> with_other_information(const AssessmentMetho
   AssessmentMethodInfo other = method;
   other.name += gains ? kCorrected : kUncorrected;
   other.title += gains ? ", y_sim corrected by the benchmark" : ", y_sim of the nominal model";
-  other.information = gains                                            ? ModelInformation::shown
-                      : method.information == ModelInformation::learnt ? ModelInformation::denied
-                                                                       : ModelInformation::nominal;
+  other.information = gains ? ModelInformation::shown : ModelInformation::denied;
   other.options.reset();
   other.reduced.clear();
   return other;

@@ -55,11 +55,15 @@ OptionKeys keys(ExcitationOptions& options) {
 class Excitation final : public AssessmentMethod {
  public:
   explicit Excitation(const AssessmentContext& context)
-      : signals_(context.study), options_(context.study.assessment.of<ExcitationOptions>()) {}
+      : signals_(context.study), options_(context.study.assessment.of<ExcitationOptions>()) {
+    if (context.benchmark && context.correction)
+      usual_ = error_regressions(model_errors(*context.benchmark), filtered_of(*context.benchmark),
+                                 options_.regression);
+  }
 
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::MatrixXd signals = signals_.of(loop.from_start());
-    if (moving_rows(signals.middleCols(loop.first, loop.samples())).rows() == 0)
+    if (moving_rows(loop.in_window(signals)).rows() == 0)
       return Assessment::not_applicable(
           "no measured disturbance, setpoint, limit or test signal moves the loop");
     const std::vector<Eigen::MatrixXd> filtered = filtered_in_window(loop, signals, options_.regression);
@@ -81,10 +85,14 @@ class Excitation final : public AssessmentMethod {
   }
 
  private:
+  std::vector<Eigen::MatrixXd> filtered_of(const AssessedLoop& loop) const {
+    return filtered_in_window(loop, signals_.of(loop.from_start()), options_.regression);
+  }
+
   void add_cv(Eigen::Index cv, const ErrorRegression& found, const Eigen::MatrixXd& e,
               const std::vector<Eigen::MatrixXd>& filtered, Assessment& assessment) const {
     const double log_p = options_.measure == DependenceMeasure::f
-                             ? found.test.all.log_p
+                             ? new_in(found, cv, usual_).all.log_p
                              : log_p_of_information(e.row(cv).transpose(), found.whiteness, filtered);
     const double score = significance_score(log_p, static_cast<double>(e.rows()));
     const bool flagged = score > -std::log10(options_.regression.alpha);
@@ -114,6 +122,7 @@ class Excitation final : public AssessmentMethod {
 
   OutsideSignals signals_;
   const ExcitationOptions& options_;
+  ErrorRegressions usual_;  ///< of a benchmark that has corrected the model; or empty
 };
 
 }  // namespace

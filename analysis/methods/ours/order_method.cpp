@@ -42,19 +42,25 @@ OptionKeys keys(OrderOptions& options) {
 ///   disturbance:  log_p_same_autoregression() of e_i and of the e_i of the benchmark: another colour than
 ///                 noise has, or another mean; not another variance, which noise may have
 ///
+/// Where the benchmark corrects the model, what the correction cannot express follows the MVs in the
+/// benchmark, too: the test is of what they explain beyond that (new_in()).
+///
 /// Each p-value is that of one of 2 ny tests (ny without a benchmark). A CV whose error follows the MVs has
 /// the source mpm, another flagged one ud.
 class Order final : public AssessmentMethod {
  public:
   explicit Order(const AssessmentContext& context) : options_(context.study.assessment.of<OrderOptions>()) {
-    if (options_.disturbances && context.benchmark)
+    if (!context.benchmark)
+      return;
+    if (options_.disturbances)
       benchmark_ = model_errors(*context.benchmark);
+    if (context.correction)
+      usual_ = regressions_of(model_errors(*context.benchmark), *context.benchmark);
   }
 
   Assessment assess(const AssessedLoop& loop) override {
     const Eigen::MatrixXd e = model_errors(loop);
-    const auto regressions = error_regressions(
-        e, filtered_in_window(loop, loop.from_start().u, options_.regression), options_.regression);
+    const ErrorRegressions regressions = regressions_of(e, loop);
     Assessment assessment;
     for (Eigen::Index cv = 0; cv < e.rows(); ++cv) {
       const std::optional<ErrorRegression>& found = regressions[static_cast<std::size_t>(cv)];
@@ -71,12 +77,18 @@ class Order final : public AssessmentMethod {
   }
 
  private:
+  ErrorRegressions regressions_of(const Eigen::MatrixXd& e, const AssessedLoop& loop) const {
+    return error_regressions(e, filtered_in_window(loop, loop.from_start().u, options_.regression),
+                             options_.regression);
+  }
+
   void add_cv(Eigen::Index cv, const ErrorRegression& found, const Eigen::MatrixXd& e,
               Assessment& assessment) const {
     const double tests = static_cast<double>(e.rows()) * (benchmark_ ? 2.0 : 1.0);
     const double limit = -std::log10(options_.regression.alpha);
     const std::optional<double> noise = log_p_of_noise(e.row(cv).transpose(), cv, found.test.order);
-    const double of_model = significance_score(found.test.all.log_p, tests);
+    const PrewhitenedTest test = new_in(found, cv, usual_);
+    const double of_model = significance_score(test.all.log_p, tests);
     CvAssessment said{of_model > limit, of_model, of_model > limit ? FaultSource::mpm : FaultSource::none};
     if (noise) {
       const double of_noise = significance_score(*noise, tests);
@@ -86,17 +98,17 @@ class Order final : public AssessmentMethod {
       said.score = larger_or_nan(of_model, of_noise);
     }
     if (said.source == FaultSource::mpm)
-      add_channels(cv, found.test.groups, assessment);
+      add_channels(cv, test.groups, assessment);
     assessment.cvs.push_back(said);
     assessment.flagged = assessment.flagged || *said.flagged;
     assessment.score = std::isnan(assessment.score) ? said.score : std::max(assessment.score, said.score);
-    assessment.numbers.push_back({"log10_p", found.test.all.log_p / std::numbers::ln10, cv});
-    assessment.numbers.push_back({"autoregression", static_cast<double>(found.test.order), cv});
+    assessment.numbers.push_back({"log10_p", test.all.log_p / std::numbers::ln10, cv});
+    assessment.numbers.push_back({"autoregression", static_cast<double>(test.order), cv});
     if (noise)
       assessment.numbers.push_back({"log10_p_noise", *noise / std::numbers::ln10, cv});
-    for (std::size_t mv = 0; mv < found.test.groups.size(); ++mv)
-      assessment.numbers.push_back({"log10_p_channel", found.test.groups[mv].log_p / std::numbers::ln10, cv,
-                                    static_cast<Eigen::Index>(mv)});
+    for (std::size_t mv = 0; mv < test.groups.size(); ++mv)
+      assessment.numbers.push_back(
+          {"log10_p_channel", test.groups[mv].log_p / std::numbers::ln10, cv, static_cast<Eigen::Index>(mv)});
   }
 
   /// ln p of the noise of this CV being that of the benchmark; none without one, or with too few samples.
@@ -126,6 +138,7 @@ class Order final : public AssessmentMethod {
   }
 
   const OrderOptions& options_;
+  ErrorRegressions usual_;                    ///< of a benchmark that has corrected the model; or empty
   std::optional<Eigen::MatrixXd> benchmark_;  ///< errors of the benchmark; none: no disturbance is flagged
 };
 

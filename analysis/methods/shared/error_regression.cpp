@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "analysis/identification/decorrelation.hpp"
+#include "analysis/statistics/f_distribution.hpp"
 #include "base/error.hpp"
 
 namespace mpm {
@@ -64,11 +65,11 @@ std::vector<Eigen::MatrixXd> filtered_in_window(const AssessedLoop& loop,
   return filtered;
 }
 
-std::vector<std::optional<ErrorRegression>> error_regressions(const Eigen::MatrixXd& errors,
-                                                              const std::vector<Eigen::MatrixXd>& filtered,
-                                                              const ErrorRegressionOptions& options) {
+ErrorRegressions error_regressions(const Eigen::MatrixXd& errors,
+                                   const std::vector<Eigen::MatrixXd>& filtered,
+                                   const ErrorRegressionOptions& options) {
   const Eigen::Index regressors = options.filters * static_cast<Eigen::Index>(filtered.size());
-  std::vector<std::optional<ErrorRegression>> regressions(static_cast<std::size_t>(errors.rows()));
+  ErrorRegressions regressions(static_cast<std::size_t>(errors.rows()));
   for (Eigen::Index cv = 0; cv < errors.rows(); ++cv) {
     const Eigen::VectorXd e = errors.row(cv).transpose();
     const Eigen::Index order = autoregression_order(e, options.largest_order);
@@ -79,6 +80,29 @@ std::vector<std::optional<ErrorRegression>> error_regressions(const Eigen::Matri
     regressions[static_cast<std::size_t>(cv)] = {whiteness, prewhitened_test(e, filtered, whiteness)};
   }
   return regressions;
+}
+
+PrewhitenedTest new_in(const ErrorRegression& found, Eigen::Index cv, const ErrorRegressions& usual) {
+  const auto place = static_cast<std::size_t>(cv);
+  PrewhitenedTest test = found.test;
+  if (place >= usual.size() || !usual[place] || usual[place]->test.all.f <= 1.0)
+    return test;
+  const ErrorRegression& benchmark = *usual[place];
+  const auto n = static_cast<double>(found.whiteness.freedom());
+  const double longer = n / static_cast<double>(benchmark.whiteness.freedom());
+  const double denominator = n - static_cast<double>(found.test.all.freedom);
+  const auto discount = [&](FTest& of, const FTest& in_benchmark) {
+    if (of.freedom == 0)
+      return;
+    of.f /= std::max(1.0, 1.0 + (in_benchmark.f - 1.0) * longer);
+    of.log_p = log_f_tail(of.f, static_cast<double>(of.freedom), denominator);
+  };
+  discount(test.all, benchmark.test.all);
+  // Signals from outside that move in one of the records alone are other groups.
+  if (test.groups.size() == benchmark.test.groups.size())
+    for (std::size_t group = 0; group < test.groups.size(); ++group)
+      discount(test.groups[group], benchmark.test.groups[group]);
+  return test;
 }
 
 Eigen::Index error_regression_samples(const ErrorRegressionOptions& options, Eigen::Index signals) {

@@ -48,9 +48,21 @@ struct ErrorRegression {
   Autoregression whiteness;
   PrewhitenedTest test;
 };
-std::vector<std::optional<ErrorRegression>> error_regressions(const Eigen::MatrixXd& errors,
-                                                              const std::vector<Eigen::MatrixXd>& filtered,
-                                                              const ErrorRegressionOptions& options);
+using ErrorRegressions = std::vector<std::optional<ErrorRegression>>;
+ErrorRegressions error_regressions(const Eigen::MatrixXd& errors,
+                                   const std::vector<Eigen::MatrixXd>& filtered,
+                                   const ErrorRegressionOptions& options);
+
+/// What signals explain of the errors of a CV beyond what they explain in the benchmark, where nothing is
+/// wrong: there the errors follow the signals in what the correction by it cannot express, as the
+/// characteristic of a valve is, and so they do in every other record. With F_b of the benchmark and n, n_b
+/// the degrees of freedom of both autoregressions each test is that of
+///
+///   F / max(1, 1 + (F_b - 1) n / n_b)
+///
+/// The test as it is where the benchmark (`usual`, of each CV) says nothing of the CV, or all signals
+/// together explain no more of it than chance does: F_b <= 1.
+PrewhitenedTest new_in(const ErrorRegression& found, Eigen::Index cv, const ErrorRegressions& usual);
 
 /// The samples without a gap that error_regressions() needs at most with so many signals.
 Eigen::Index error_regression_samples(const ErrorRegressionOptions& options, Eigen::Index signals);

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_runs.hpp"
+#include "analysis/experiment/experiment.hpp"
 #include "analysis/identification/autoregression.hpp"
 #include "analysis/identification/prewhitened_test.hpp"
 #include "analysis/methods/assessed_loop.hpp"
@@ -134,6 +135,67 @@ TEST_CASE("order and excitation: their p-values are those of the regression that
   CHECK_THROWS_WITH(regression_shell("[assessment.excitation]\nmeasure = \"mi\"\n"),
                     Catch::Contains("mutual-information"));
   CHECK_THROWS_WITH(regression_shell("[assessment.excitation]\nbins = 1\n"), Catch::Contains("bins"));
+}
+
+TEST_CASE("order and excitation: what the MVs explain in the benchmark as well is not new") {
+  const RegressionBench& bench = shell_bench();
+  const AssessedLoop loop = bench.loop(kTimeConstantY1U1);
+  const auto regressions_of = [](const AssessedLoop& record) {
+    return error_regressions(model_errors(record), filtered_in_window(record, record.from_start().u, {}), {});
+  };
+  const ErrorRegressions found = regressions_of(loop);
+  ErrorRegressions usual = regressions_of(*bench.context.benchmark);
+  REQUIRE(found[0]->test.all.f > 10.0);
+  const auto same_as = [](const FTest& one, const FTest& other, double divisor) {
+    CHECK(one.f == Approx(other.f / divisor));
+    CHECK(one.freedom == other.freedom);
+    CHECK((divisor > 1.0 ? one.log_p > other.log_p : one.log_p == other.log_p));
+  };
+  // Nothing is usual: of no benchmark, of a CV without samples, of one in which the MVs explain nothing.
+  usual[0]->test.all.f = 1.0;
+  for (FTest& group : usual[0]->test.groups)
+    group.f = 5.0;
+  ErrorRegressions missing = usual;
+  missing[0].reset();
+  for (const ErrorRegressions& none : {ErrorRegressions{}, missing, usual}) {
+    const PrewhitenedTest test = new_in(*found[0], 0, none);
+    same_as(test.all, found[0]->test.all, 1.0);
+    same_as(test.groups[0], found[0]->test.groups[0], 1.0);
+  }
+  usual[0]->test.all.f = 4.0;
+  usual[0]->test.groups[1].f = 0.5;
+  const double longer =
+      static_cast<double>(found[0]->whiteness.freedom()) / static_cast<double>(usual[0]->whiteness.freedom());
+  const PrewhitenedTest test = new_in(*found[0], 0, usual);
+  same_as(test.all, found[0]->test.all, 1.0 + 3.0 * longer);
+  same_as(test.groups[0], found[0]->test.groups[0], 1.0 + 4.0 * longer);
+  same_as(test.groups[1], found[0]->test.groups[1], 1.0);
+  // What is usual grows with the samples: a window of a third of them shows a third of it.
+  const ErrorRegressions brief = regressions_of(window_of(loop, 100, loop.samples() / 3));
+  const double part =
+      static_cast<double>(brief[0]->whiteness.freedom()) / static_cast<double>(usual[0]->whiteness.freedom());
+  CHECK(part < 0.4);
+  same_as(new_in(*brief[0], 0, usual).all, brief[0]->test.all, 1.0 + 3.0 * part);
+}
+
+TEST_CASE("order and excitation: what a valve adds that no correction expresses is no fault") {
+  Study study = find_study("wood-berry");
+  study.simulation.excitation = SignalSequence::each;
+  study.experiments = {.mpm = 4, .healthy = 8};
+  study.mismatch.impact = Distribution::constant(3.0);
+  study.world = WorldRanges{
+      .count = 1, .valve_curvature = Distribution::constant(0.5), .cost_loops = 1, .repair_loops = 1};
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  ExperimentRunner runner(study, basis, {"order", "excitation"}, testing::kFactory);
+  int healthy = 0, mismatches = 0;
+  for (std::int64_t index = 0; index < study.experiment_count(); ++index) {
+    const ExperimentRecord record = runner.run(index, StorePolicy::none);
+    for (const AssessmentRecord& said : record.assessments)
+      (record.draw.kind == ExperimentKind::healthy ? healthy : mismatches) += said.flagged ? 1 : 0;
+  }
+  INFO(healthy << " of 16, " << mismatches << " of 8");
+  CHECK(healthy <= 1);
+  CHECK(mismatches >= 6);
 }
 
 TEST_CASE("order and excitation: a window of a record is that record from the start of the window on") {
