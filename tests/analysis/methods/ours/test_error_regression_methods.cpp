@@ -183,8 +183,11 @@ TEST_CASE("order and excitation: what a valve adds that no correction expresses 
   study.simulation.excitation = SignalSequence::each;
   study.experiments = {.mpm = 4, .healthy = 8};
   study.mismatch.impact = Distribution::constant(3.0);
-  study.world = WorldRanges{
-      .count = 1, .valve_curvature = Distribution::constant(0.5), .cost_loops = 1, .repair_loops = 1};
+  study.world = WorldRanges{.count = 1,
+                            .extra_lag = Distribution::constant(0.1),
+                            .valve_curvature = Distribution::constant(0.8),
+                            .cost_loops = 1,
+                            .repair_loops = 1};
   const BasisCase basis = run_basis_case(study, testing::kFactory);
   ExperimentRunner runner(study, basis, {"order", "excitation"}, testing::kFactory);
   int healthy = 0, mismatches = 0;
@@ -194,7 +197,7 @@ TEST_CASE("order and excitation: what a valve adds that no correction expresses 
       (record.draw.kind == ExperimentKind::healthy ? healthy : mismatches) += said.flagged ? 1 : 0;
   }
   INFO(healthy << " of 16, " << mismatches << " of 8");
-  CHECK(healthy <= 1);
+  CHECK(healthy <= 3);  // without what the benchmark leaves 10
   CHECK(mismatches >= 6);
 }
 
