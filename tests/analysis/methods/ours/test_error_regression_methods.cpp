@@ -189,6 +189,21 @@ TEST_CASE("order and excitation: what a valve adds that no correction expresses 
                             .cost_loops = 1,
                             .repair_loops = 1};
   const BasisCase basis = run_basis_case(study, testing::kFactory);
+  // A variant that is denied the correction is not told what it leaves in the benchmark either.
+  const AssessmentContext told = assessment_context(study, basis, testing::kFactory);
+  AssessmentContext untold = told;
+  untold.correction.reset();
+  const AssessedLoop loop = assessed_loop(
+      study, basis.point, simulate_experiment(study, draw_experiment(study, 0), testing::kFactory));
+  for (const std::string method : {"order", "excitation"}) {
+    INFO(method);
+    const auto says = [&](const std::string& name, const AssessmentContext& context) {
+      const Assessment said = Assessor(shipped_methods().method(name), context).assess(loop);
+      return std::pair(said.number("log10_p", 0), said.number("log10_p", 1));
+    };
+    CHECK(says(method + ":uncorrected", told) == says(method, untold));
+    CHECK(says(method, told) != says(method, untold));
+  }
   ExperimentRunner runner(study, basis, {"order", "excitation"}, testing::kFactory);
   int healthy = 0, mismatches = 0;
   for (std::int64_t index = 0; index < study.experiment_count(); ++index) {
