@@ -557,9 +557,13 @@ class FaultPosterior final : public AssessmentMethod {
 
   void add_numbers(const FaultProbabilities& probabilities, const std::vector<CvEvidence>& evidence,
                    std::optional<Eigen::Index> worst, Assessment& assessment) const {
-    assessment.numbers = {{"p_healthy", probabilities.healthy}, {"p_mpm", probabilities.mpm},
-                          {"p_ud", probabilities.ud},           {"p_both", probabilities.both},
-                          {"p_other", probabilities.other},     {"p_sensor", probabilities.sensor}};
+    const SourceProbabilities stated = stated_of(probabilities);
+    assessment.numbers.clear();
+    for (std::size_t i = 0; i < stated.size(); ++i)
+      assessment.numbers.push_back({source_probability_numbers()[i].name, stated[i]});
+    const double of_sensors = probabilities.other > 0.0 ? probabilities.sensor / probabilities.other : 0.0;
+    assessment.numbers.push_back(
+        {"p_sensor", of_sensors * stated[static_cast<std::size_t>(FaultSource::other)]});
     for (std::size_t i = 0; i < probabilities.cvs.size(); ++i) {
       const auto cv = static_cast<Eigen::Index>(i);
       const FaultProbabilities::OfCv& of_cv = probabilities.cvs[i];

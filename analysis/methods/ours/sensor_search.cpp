@@ -17,10 +17,11 @@ namespace {
 constexpr Eigen::Index kFirstOnsets = 24;  ///< of the first look
 constexpr double kLastSensorOnset = 0.85;  ///< of the record
 constexpr double kSensorParameters = 2.0;
-constexpr Eigen::Index kMedianReach = 15;  ///< samples to either side of which a median is taken
-constexpr double kNoisier = 3.0;           ///< noise of an MD over that of the benchmark
-constexpr double kProof = 15.0;            ///< log L that the noise of an MD brings
-constexpr double kLeastAmplitude = 0.3;    ///< of this noise in y_sim, 1 of all of it
+constexpr Eigen::Index kMedianReach = 4;  ///< samples to either side of which a median is taken
+constexpr double kNoisier = 3.0;          ///< noise of an MD over that of the benchmark
+constexpr double kProof = 15.0;           ///< log L that the noise of an MD brings
+constexpr double kMostDeviations = 4.0;   ///< of noise from its median
+constexpr double kLeastAmplitude = 0.1;   ///< of this noise in y_sim, 1 of all of it
 
 /// The onset from which on `gain` is largest, and this gain.
 struct BestOnset {
@@ -70,13 +71,14 @@ double sse_gain(const WhitenedErrors::Amplitude& amplitude) {
   return amplitude.squares > 0.0 ? amplitude.product * amplitude.product / amplitude.squares : 0.0;
 }
 
-/// d less its median over the samples about each.
-Eigen::RowVectorXd fast_part(const Eigen::RowVectorXd& d) {
+/// d less its median over the samples about each, as far as noise of this deviation goes: a pulse is none.
+Eigen::RowVectorXd fast_part(const Eigen::RowVectorXd& d, double deviation) {
   Eigen::RowVectorXd fast(d.size());
   for (Eigen::Index k = 0; k < d.size(); ++k) {
     const Eigen::Index first = std::max<Eigen::Index>(0, k - kMedianReach);
     const Eigen::Index count = std::min(d.size() - 1, k + kMedianReach) - first + 1;
-    fast(k) = d(k) - upper_median({d.data() + first, d.data() + first + count});
+    fast(k) = std::clamp(d(k) - upper_median({d.data() + first, d.data() + first + count}),
+                         -kMostDeviations * deviation, kMostDeviations * deviation);
   }
   return fast;
 }
@@ -180,9 +182,10 @@ bool has_noisy_md(const std::vector<ModelErrors>& models, const std::vector<Whit
                   double healthy_noise) {
   const Eigen::RowVectorXd d = inputs.row(input).head(errors.front().size());
   const MdResponses responses(models, errors, input, sample_time);
-  if (responses.samples() == 0.0 || !(deviation_of_steps(d.tail(d.size() / 2)) > kNoisier * healthy_noise))
+  const double deviation = deviation_of_steps(d.tail(d.size() / 2));
+  if (responses.samples() == 0.0 || !(deviation > kNoisier * healthy_noise))
     return false;
-  const auto [product, squares] = responses.amplitude(responses.to(fast_part(d)));
+  const auto [product, squares] = responses.amplitude(responses.to(fast_part(d, deviation)));
   return product < -kLeastAmplitude * squares && product * product > 2.0 * kProof * squares;
 }
 

@@ -17,8 +17,8 @@ namespace {
 
 // Chosen on the standard suite under the development seed 7. The likelihood of a valve that jumps is narrow
 // in S, so that the grid is close.
-constexpr double kSmallestBand = 0.015, kLargestBand = 0.6;  ///< S or f_S, over what the MV moves
-constexpr int kBandSizes = 60;
+constexpr double kSmallestBand = 0.015, kLargestBand = 1.2;  ///< S or f_S, over what the MV moves
+constexpr int kBandSizes = 64;
 constexpr std::array kJumps{0.0, 0.25, 0.5, 0.75, 1.0};  ///< J/S, or 1 - f_D/f_S
 constexpr std::size_t kMostSearched = 6;
 constexpr double kLastValveOnset = 0.85;  ///< of the record

@@ -161,7 +161,7 @@ TEST_CASE("posterior of a loop: one fault and several, from weights in closed fo
   const std::vector<CvEvidence> cvs{evidence(std::log(30.0), 0.0, 0.0),
                                     evidence(0.0, std::log(5.0), -kInfinity)};
   // Weights against nothing: 3, 0.2 and 0.05 of the first CV; 0.1, 1 and 0 of the second.
-  FaultPriorSet priors{{prior, prior}, 0.0, true, kInfinity, true};
+  FaultPriorSet priors{{prior, prior}, 0.0, 0.0, true, kInfinity, true};
   const FaultProbabilities one = fault_probabilities(priors, cvs);
   CHECK(one.healthy == Approx(1.0 / 5.35));
   CHECK(one.mpm == Approx(3.1 / 5.35));
@@ -180,6 +180,20 @@ TEST_CASE("posterior of a loop: one fault and several, from weights in closed fo
   CHECK(several.healthy + several.mpm + several.ud + several.both == Approx(1.0));
   CHECK(several.log_odds == Approx(std::log(total - 1.0)));
   CHECK(several.cvs[0].mpm == Approx(3.0 / 4.25));
+
+  // A sensor of the second CV with a weight of 2: beside another fault it is none of its own.
+  std::vector<CvEvidence> with_sensor = cvs;
+  priors.cvs[1].sensor = 0.5;
+  with_sensor[1].sensor = with_sensor[1].healthy + std::log(4.0);
+  const FaultProbabilities sensor = fault_probabilities(priors, with_sensor);
+  const double all = 4.25 * 4.1;
+  CHECK(sensor.healthy == Approx(1.0 / all));
+  CHECK(sensor.other == Approx(2.0 / all));
+  CHECK(sensor.sensor == sensor.other);
+  CHECK(sensor.mpm == Approx((4.0 * 3.1 - 3.0) / all));
+  CHECK(sensor.ud == Approx((1.2 * 4.0 - 3.0) / all));
+  CHECK(sensor.healthy + sensor.mpm + sensor.ud + sensor.both + sensor.other == Approx(1.0));
+  CHECK(sensor.cvs[1].sensor == Approx(2.0 / 4.1));
 
   // The odds of a fault that nobody doubts do not end at those that a probability can have.
   priors.one_fault = true;
