@@ -57,12 +57,12 @@ OptionKeys keys(MvOptions& mv) {
                       "1 / MV^2")
               .required(),
           key::number("target_weight", mv.target_weight, NumberRule::at_least(0),
-                      "Q_u of (6.20). Weights that leave a move undetermined are refused: both 0 without "
-                      "setpoints, or too few setpoints",
+                      "Q_u of (6.20). Weights that leave a move undetermined are refused, for example both "
+                      "weights 0 and no setpoint, or too few setpoints",
                       "1 / MV^2")
               .otherwise("0: no target"),
           key::option("resting_value", "number",
-                      "where the MV rests as far as the limits of the CVs allow (ideal resting value); "
+                      "ideal resting value: the MV rests here if the limits of the CVs allow it. "
                       "`resting_weight` times the squared distance is added to (6.19)",
                       "MV")
               .otherwise("none")
@@ -72,7 +72,7 @@ OptionKeys keys(MvOptions& mv) {
               .allow("> 0"),
           key::check(read_cost),
           key::limits("hard", mv.hard, "hard limits", "MV"),
-          key::option("move_limit", "number", "largest move of a sample, a hard limit", "MV")
+          key::option("move_limit", "number", "hard limit on the move of one sample", "MV")
               .otherwise("none")
               .allow("> 0")};
 }
@@ -124,46 +124,47 @@ void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
 }
 
 OptionKeys keys(CvOptions& cv) {
-  return {key::option("setpoint_weight", "number", "Q_y of (2.26), W of (3.30)", "1 / CV^2")
-              .otherwise("none: no setpoint")
-              .allow("> 0"),
-          key::option("setpoint", "number", "setpoint at the start; `simulation.step` changes it", "CV")
-              .otherwise("0")
-              .allow("finite; with `setpoint_weight`"),
-          key::option("slack_weight", "number", "tau_y of (6.20)", "1 / CV^2")
-              .otherwise("required with `soft` and without `slack_cost`")
-              .allow("> 0"),
-          key::option("slack_cost", "number",
-                      "linear cost of a violation of the soft limits, beside or in place of `slack_weight`",
-                      "1 / CV")
-              .otherwise("none")
-              .allow("> 0"),
-          key::option("reference_time", "number",
-                      "time constant of the reference trajectory: the CV is asked to approach its setpoint "
-                      "from where it is",
-                      "time")
-              .otherwise("none: at once")
-              .allow("> 0; with `setpoint_weight`"),
-          key::option("bias_ramp", "number",
-                      "share of the change of the output bias from one sample to the next that counts as its "
-                      "ramp. 0: the bias is a constant, and an unknown flow leaves an offset")
-              .otherwise(fmt::format("{} for a CV that integrates", kBiasRamp))
-              .allow("0 to 1; for a CV that integrates"),
-          key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
-              .otherwise("required without a setpoint")
-              .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
-          analyser_period(cv.analyser,
-                          "for a CV that an analyser measures: samples from one analysis to the next; in "
-                          "between the CV is held"),
-          analyser_delay(cv.analyser, "samples from taking a sample of the stream to the analysis")
-              .also("below `simulation.samples`"),
-          key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
-          key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
+  return {
+      key::option("setpoint_weight", "number", "Q_y of (2.26), W of (3.30)", "1 / CV^2")
+          .otherwise("none: no setpoint")
+          .allow("> 0"),
+      key::option("setpoint", "number", "setpoint at the start; `simulation.step` changes it", "CV")
+          .otherwise("0")
+          .allow("finite; with `setpoint_weight`"),
+      key::option("slack_weight", "number", "tau_y of (6.20)", "1 / CV^2")
+          .otherwise("required with `soft` and without `slack_cost`")
+          .allow("> 0"),
+      key::option("slack_cost", "number",
+                  "linear cost of a violation of the soft limits, beside or in place of `slack_weight`",
+                  "1 / CV")
+          .otherwise("none")
+          .allow("> 0"),
+      key::option("reference_time", "number",
+                  "time constant of the reference trajectory, along which the CV approaches its setpoint "
+                  "from where it is",
+                  "time")
+          .otherwise("none: at once")
+          .allow("> 0; with `setpoint_weight`"),
+      key::option("bias_ramp", "number",
+                  "share of the change of the output bias from one sample to the next that counts as its "
+                  "ramp. 0: the bias is a constant, and an unknown flow leaves an offset")
+          .otherwise(fmt::format("{} for a CV that integrates", kBiasRamp))
+          .allow("0 to 1; for a CV that integrates"),
+      key::option("soft", "list of 2 numbers", "soft limits, the range of the CV", "CV")
+          .otherwise("required without a setpoint")
+          .allow("low <= high; `-inf` and `inf` for no limit; within `hard`"),
+      analyser_period(cv.analyser,
+                      "for a CV that an analyser measures: samples from one analysis to the next; the "
+                      "measurement is held in between"),
+      analyser_delay(cv.analyser, "samples from taking a sample of the stream to the result of the analysis")
+          .also("below `simulation.samples`"),
+      key::limits("hard", cv.hard, "hard limits; a loop that cannot keep them is infeasible", "CV"),
+      key::check([&cv](const TomlTable& table) { read_setpoint_and_range(table, cv); })};
 }
 
 OptionKeys keys(AnalyserTiming& md) {
-  return {analyser_period(md, "samples from one measurement to the next; in between the MD is held"),
-          analyser_delay(md, "samples from the measurement to when controller and historian have it")};
+  return {analyser_period(md, "samples from one measurement to the next; the measurement is held in between"),
+          analyser_delay(md, "samples from the measurement until controller and historian receive it")};
 }
 
 enum class Tables { of_all, of_some };
@@ -250,7 +251,7 @@ OptionKeys controller_program_keys(std::vector<std::string>& command, double& ti
   return {key::command("command", command,
                        "the program, found in PATH, and its arguments; it runs in the current folder"),
           key::time_limit(time_limit,
-                          "wall-clock seconds that an answer may take; a loop that needs more is `failed`")};
+                          "wall-clock seconds that one answer may take; a loop that needs more is `failed`")};
 }
 
 OptionKey program_key(std::optional<ControllerProgram>& program) {
@@ -266,10 +267,9 @@ OptionKey program_key(std::optional<ControllerProgram>& program) {
     read_keys(controller.table(key, key_names(below())), controller_program_keys(command, time_limit));
     program = ControllerProgram(std::move(command), time_limit);
   };
-  return key::option(
-             "program", "table",
-             "the controller is a program ([own_plant.md](own_plant.md#your-own-controller)), which is told "
-             "these numbers")
+  return key::option("program", "table",
+                     "the controller is a program ([own_plant.md](own_plant.md#your-own-controller)), which "
+                     "receives the numbers of this table")
       .otherwise("none")
       .with("", below)
       .read(read);
@@ -318,8 +318,8 @@ OptionKeys controller_keys(Study& study) {
               .read(read_control_horizon),
           key::check([&study](const TomlTable& table) { refuse_large_program(table, study); }),
           key::option("move_blocks", "list of whole numbers",
-                      "samples for which each planned position of the MVs is held (move blocking); "
-                      "`control_horizon` numbers; the last one is held to the end of the horizon",
+                      "move blocking: numbers of samples for which the planned positions of the MVs are "
+                      "held, `control_horizon` numbers. The last position is held to the end of the horizon",
                       "samples")
               .otherwise("none: one sample each")
               .allow("1 or more each")
@@ -332,31 +332,30 @@ OptionKeys controller_keys(Study& study) {
                   options.move_blocks.push_back(static_cast<int>(samples));
                 }
               }),
-          key::choice(
-              "weight_convention", options.weight_convention, {"direct", "squared"},
-              "`abs(Q x)^2` in (6.20) as Q x^2 or as (Q x)^2. Open in the thesis; the first comes close to "
-              "its results"),
+          key::choice("weight_convention", options.weight_convention, {"direct", "squared"},
+                      "how `abs(Q x)^2` in (6.20) is read: `\"direct\"` as Q x^2, `\"squared\"` as (Q x)^2. "
+                      "Open in the thesis; `\"direct\"` comes close to its results"),
           key::choice("slack", options.slack_form, {"per-sample", "per-cv"},
-                      "one slack variable for each CV and sample, or for each CV. Open; with the "
-                      "first T0 settles as in (6.24)"),
+                      "`\"per-sample\"`: one slack variable for each CV and sample. `\"per-cv\"`: one for "
+                      "each CV. Open; with `\"per-sample\"` T0 settles as in (6.24)"),
           key::number("target_violation_cost", options.target_violation_cost, NumberRule::positive(),
                       "price of one unit of steady-state violation of a soft limit, in multiples of the "
                       "largest `cost`. Open: (6.19) has no solution if no target keeps the limits",
                       "1"),
           // Not written when it is left out: finished boards have the digests of studies without it.
           key::option("solver_time_limit", "number",
-                      "processor time that Ipopt may take for one problem, where it answers in place of the "
-                      "active-set method or alone; a loop that needs more is `failed`",
+                      "processor time that Ipopt may take for one problem, alone or in place of the "
+                      "active-set method; a loop that needs more is `failed`",
                       "s")
               .otherwise(fmt::format("{:g}", options.solver_time_limit))
               .allow("> 0")
               .read([&options](const TomlTable& table, const std::string& key) {
                 options.solver_time_limit = read_number(table, key, NumberRule::positive());
               }),
-          variable_tables<MvOptions>("mv", study.plant.mvs, take_mv, "one table for each MV, by name"),
-          variable_tables<CvOptions>("cv", study.plant.cvs, take_cv, "one table for each CV, by name"),
+          variable_tables<MvOptions>("mv", study.plant.mvs, take_mv, "one table for each MV, under its name"),
+          variable_tables<CvOptions>("cv", study.plant.cvs, take_cv, "one table for each CV, under its name"),
           variable_tables<AnalyserTiming>("md", study.plant.mds, take_md,
-                                          "one table for each MD that is measured late, by name",
+                                          "one table for each MD that is measured late, under its name",
                                           Tables::of_some),
           key::check([&study](const TomlTable& table) {
             table.located("", [&] {

@@ -79,12 +79,12 @@ OptionKeys experiments_keys(ExperimentCounts& counts) {
       count("ud", counts.ud, "experiments with an unmeasured disturbance").required(),
       count("mpm_ud", counts.mpm_ud, "experiments with both on one CV").required(),
       count("healthy", counts.healthy,
-            "experiments in which nothing is wrong: each has its own noise and the excitation of all others"),
+            "experiments without a fault; each has its own noise and the same excitation as all others"),
       count("tuning", counts.tuning,
             "experiments in which model and plant agree and one weight of the controller is changed"),
       count("other", counts.other,
-            "experiments with a fault around the model: a sensor, a valve, a limit, an operator (`other`); "
-            "not all counts 0"),
+            "experiments with a fault outside of the model: a sensor, a valve, a limit, an operator "
+            "(`other`). At least one of the six counts is above 0"),
       key::check([&counts](const TomlTable& table) {
         if (counts.total() == 0)
           table.refuse("", "no experiment", "at least one of any kind");
@@ -118,7 +118,7 @@ OptionKey mismatch_channels_key(Study& study) {
     std::sort(study.mismatch.channels.begin(), study.mismatch.channels.end());
   };
   return key::option("channels", "list of texts",
-                     "channels that mismatches change, whatever their extent, as `CV/MV`: `[\"y1/u1\"]`")
+                     "channels that mismatches of any extent change, written as `CV/MV`: `[\"y1/u1\"]`")
       .otherwise("every channel from an MV")
       .allow("channels of the model, none twice; not for a nonlinear plant")
       .read(read);
@@ -186,40 +186,46 @@ OptionKeys mismatch_ranges_keys(Study& study) {
   MismatchRanges& ranges = study.mismatch;
   constexpr std::size_t kClassic = 3;  // those of table 6.4, without which the others do not stand
   const NumberRule positive = NumberRule::positive();
-  return {mismatch_channels_key(study),
-          weights_key("parameter_weights", kRandomMismatchParameters, kClassic, ranges.parameter_weight,
-                      {"relative frequency; they need not sum to 1", "the same", "the same",
-                       "of a further lag", "of a right-half-plane zero", "of a gain with the other sign"},
-                      "relative frequencies of the changed parameters")
-              .otherwise("1 for the three of table 6.4"),
-          refuse_no_weight("parameter_weights", ranges.parameter_weight),
-          weights_key("extent_weights", kMismatchExtents, 0, ranges.extent_weight,
-                      {"relative frequency of one parameter of one channel",
-                       "of gain, time constant and dead time of one channel, each drawn",
-                       "of one parameter of every channel from an MV to one CV, each by its own amount",
-                       "of the gain of every channel of an MV, all by one factor: its actuator",
-                       "of one parameter of every channel from an MV, each by its own amount: a drift"},
-                      "relative frequencies of the extents of a mismatch")
-              .otherwise("`parameter` alone"),
-          refuse_no_weight("extent_weights", ranges.extent_weight),
-          key::distribution(
-              "gain_factor", ranges.gain_factor, positive,
-              "factor of the gain; one of 0 would remove the channel, a negative one reverse the loop", "1"),
-          key::distribution("time_constant_factor", ranges.time_constant_factor, positive,
-                            "factor of the time constants", "1"),
-          key::distribution("dead_time_shift", ranges.dead_time_shift, NumberRule::finite(),
-                            "added to the dead time; draws are confined to those that leave it >= 0", "time")
-              .allow("draws that can be above minus the shortest dead time"),
-          key::check([&study](const TomlTable& table) { refuse_impossible_shift(table, study); }),
-          key::distribution("second_order", ranges.second_order, positive,
-                            "time constant T of a further lag, G / (T s + 1), over the residence time of the "
-                            "channel (of a first-order one its time constant; at least a sample)",
-                            "1"),
-          key::distribution("inverse_response", ranges.inverse_response, positive,
-                            "T of a right-half-plane zero, G (1 - T s) / (1 + T s), over the same", "1"),
-          key::check([&study](const TomlTable& table) { refuse_long_channels(table, study); }),
-          impact_key(ranges.impact, "effect to which every mismatch is scaled: see below", "1"),
-          plant_parameters_key(ranges.plant_parameters, study)};
+  return {
+      mismatch_channels_key(study),
+      weights_key("parameter_weights", kRandomMismatchParameters, kClassic, ranges.parameter_weight,
+                  {"relative frequency; they need not sum to 1", "the same", "the same",
+                   "relative frequency of a further lag", "relative frequency of a right-half-plane zero",
+                   "relative frequency of a gain with the opposite sign"},
+                  "relative frequencies of the changed parameters")
+          .otherwise("1 for the three of table 6.4"),
+      refuse_no_weight("parameter_weights", ranges.parameter_weight),
+      weights_key(
+          "extent_weights", kMismatchExtents, 0, ranges.extent_weight,
+          {"relative frequency of one parameter of one channel",
+           "the same for gain, time constant and dead time of one channel, each drawn",
+           "the same for one parameter of every channel from an MV to one CV, each by its own amount",
+           "the same for the gain of every channel of an MV, all by one factor: a fault of its actuator",
+           "the same for one parameter of every channel from an MV, each by its own amount: a drift of the "
+           "plant"},
+          "relative frequencies of the extents of a mismatch")
+          .otherwise("`parameter` alone"),
+      refuse_no_weight("extent_weights", ranges.extent_weight),
+      key::distribution("gain_factor", ranges.gain_factor, positive,
+                        "factor of the gain. A factor of 0 would remove the channel; a negative one would "
+                        "reverse the sign of the loop",
+                        "1"),
+      key::distribution("time_constant_factor", ranges.time_constant_factor, positive,
+                        "factor of the time constants", "1"),
+      key::distribution("dead_time_shift", ranges.dead_time_shift, NumberRule::finite(),
+                        "added to the dead time; only shifts that leave it >= 0 are drawn", "time")
+          .allow("the upper end above minus the shortest dead time"),
+      key::check([&study](const TomlTable& table) { refuse_impossible_shift(table, study); }),
+      key::distribution("second_order", ranges.second_order, positive,
+                        "time constant T of a further lag, G / (T s + 1), over the residence time of the "
+                        "channel, which is at least a sample (for a first-order channel, its time constant)",
+                        "1"),
+      key::distribution("inverse_response", ranges.inverse_response, positive,
+                        "T of a right-half-plane zero, G (1 - T s) / (1 + T s), over the residence time",
+                        "1"),
+      key::check([&study](const TomlTable& table) { refuse_long_channels(table, study); }),
+      impact_key(ranges.impact, "effect to which every mismatch is scaled (see below)", "1"),
+      plant_parameters_key(ranges.plant_parameters, study)};
 }
 
 OptionKeys disturbance_ranges_keys(Study& study) {
@@ -228,37 +234,39 @@ OptionKeys disturbance_ranges_keys(Study& study) {
   return {
       key::some_of(
           "cvs", ranges.cvs, [&study] { return variable_names(study.plant.cvs); },
-          "CVs on which disturbances act; one on an MV (`place_weights`) reaches what the MV does")
+          "CVs on which disturbances act; a disturbance on an MV (`place_weights`) reaches all CVs of the MV")
           .otherwise("every CV")
           .allow(
               "names of CVs, none twice; with `mpm_ud` experiments those of `mismatch.channels` among them"),
       key::check([&study](const TomlTable& table) { check_disturbed_cvs(table, study); }),
       key::distribution("gain", ranges.gain, positive,
-                        "static gain; its sign would change nothing, v being symmetric", "CV"),
+                        "static gain; its sign would change nothing, because v is symmetric", "CV"),
       key::distribution("time_constant", ranges.time_constant, positive, "time constant", "time"),
       key::number("v_standard_deviation", ranges.v_standard_deviation, positive,
-                  "of v, which is held over a sample. Open; 1 gives the share of infeasible experiments that "
-                  "the thesis has",
+                  "standard deviation of v, which is held over a sample. Open in the thesis; 1 gives its "
+                  "share of infeasible experiments",
                   "1"),
       sequence_key(
           ranges.sequence,
-          "whether every experiment draws the random numbers of its v, or all have the same, drawn once for "
-          "the study, as a random block with a fixed seed does. Open: table 6.4 draws the CV and G_d, not v"),
+          "`\"each\"`: every experiment draws its own v. `\"shared\"`: all have the same v, drawn once for "
+          "the study, like a random block with a fixed seed. Open: table 6.4 draws the CV and G_d, not v"),
       weights_key(
           "signal_weights", kDisturbanceShapes, 0, ranges.signal_weight,
-          {"relative frequency of white noise: y_d is slow or fast filtered noise, as `time_constant` has it",
-           "of one step, up or down, between 10 and 60 % of the record",
-           "of a ramp to the end of the record, which begins in the same part of it", "of summed white noise",
-           "of a sine with a period of 8 samples to a quarter of the record: another loop that oscillates",
-           "of white noise in bursts of 20 samples with 80 samples between them, on the average"},
+          {"relative frequency of white noise: y_d is filtered noise, slow or fast as `time_constant` says",
+           "the same for one step, up or down, between 10 and 60 % of the record",
+           "the same for a ramp that begins in the same part of the record and goes on to its end",
+           "the same for summed white noise",
+           "the same for a sine with a period of 8 samples to a quarter of the record, as from another loop "
+           "that oscillates",
+           "the same for white noise in bursts of 20 samples with 80 samples between them, on average"},
           "relative frequencies of the shapes of v")
           .otherwise("`white` alone"),
       refuse_no_weight("signal_weights", ranges.signal_weight),
       weights_key("place_weights", kDisturbancePlaces, 0, ranges.place_weight,
-                  {"relative frequency of one CV; with a mismatch, its CV",
-                   "of an MV on its way to the plant, invisible to controller and record; `gain` is that of "
-                   "the CV with the largest gain from it",
-                   "of two or three CVs, each through its own G_d from the same v"},
+                  {"relative frequency of one CV; in an experiment with a mismatch, the CV of the mismatch",
+                   "the same for an MV on its way to the plant, invisible to controller and record; `gain` "
+                   "counts at the CV with the largest gain from this MV",
+                   "the same for two or three CVs, each through its own G_d from the same v"},
                   "relative frequencies of the places where a disturbance acts")
           .otherwise("`cv` alone"),
       refuse_no_weight("place_weights", ranges.place_weight),
@@ -272,22 +280,23 @@ OptionKeys tuning_keys(Study& study) {
       table.refuse("parameter_weights", "a weight of 0 for everything that the controller has",
                    "at least one > 0");
   };
-  return {
-      weights_key("parameter_weights", kTuningParameters, kTuningParameters.size(), ranges.parameter_weight,
-                  {"relative frequency, of MVs; the four need not sum to 1", "the same, of MVs with a target",
-                   "the same, of CVs with a soft limit", "the same, of CVs with a setpoint"},
-                  "relative frequencies of the changed parameters")
-          .otherwise("all 1")
-          .allow("above 0 for something that the controller has, where there are bad tunings"),
-      key::distribution("factor", ranges.factor, NumberRule::positive(),
-                        "factor of the weight as the study writes it, whatever `weight_convention` says",
-                        "1"),
-      key::choice(
-          "sensitivity", ranges.sensitivity, {"current", "design"},
-          "the controller whose S0 diagnoses the experiment. `\"current\"`: the one that runs, since S0 "
-          "belongs to the controller and is determined again when its tuning changes (appendix A2, scenario "
-          "4 of chapter 4). `\"design\"`: that of the study, as if nobody had noticed the change"),
-      key::check(refuse_no_tuning)};
+  return {weights_key(
+              "parameter_weights", kTuningParameters, kTuningParameters.size(), ranges.parameter_weight,
+              {"relative frequency of a change of the move suppression of an MV; the four need not sum to 1",
+               "the same for MVs with a target", "the same for CVs with a soft limit",
+               "the same for CVs with a setpoint"},
+              "relative frequencies of the changed parameters")
+              .otherwise("all 1")
+              .allow("with bad tunings, above 0 for a weight that the controller has"),
+          key::distribution("factor", ranges.factor, NumberRule::positive(),
+                            "factor of the weight as the study writes it, whatever `weight_convention` says",
+                            "1"),
+          key::choice("sensitivity", ranges.sensitivity, {"current", "design"},
+                      "controller whose S0 is used in the diagnosis of the experiment. `\"current\"`: the "
+                      "controller that runs, since S0 belongs to the controller and is determined again when "
+                      "its tuning changes (appendix A2, scenario 4 of chapter 4). `\"design\"`: the "
+                      "controller of the study, as if nobody had noticed the change"),
+          key::check(refuse_no_tuning)};
 }
 
 std::vector<const char*> other_fault_meanings() {
@@ -311,27 +320,27 @@ OptionKeys other_keys(Study& study) {
           .allow("some kind > 0 that the loops can have"),
       key::distribution("sensor", ranges.sensor, positive,
                         "bias, or drift at the end of the record, over the standard deviation of the noise "
-                        "(1 without noise); either sign",
+                        "(over 1 without noise), with either sign",
                         "1"),
       key::distribution("valve", ranges.valve, positive,
                         "S, d or f_S of a valve over the range of the hard limits of its MV (1 without them)",
                         "1"),
       key::choice(
           "valve_start", ranges.valve_start,
-          "where the stem of a valve stands that sticks from the first sample on: where it is asked to, "
-          "or anywhere that it can stand under this signal, drawn for each experiment"),
+          "where the stem stands if a valve sticks from the first sample on. `\"signal\"`: at its signal. "
+          "`\"unknown\"`: anywhere that it can stand under this signal, drawn for each experiment"),
       key::distribution("jump", ranges.jump, positive,
                         "J over S of `stiction`, and (f_S - f_D) over f_S of `friction`, at most 1 there",
                         "1"),
       key::distribution("md_gain", ranges.md_gain, positive, "factor of the measurement of an MD", "1"),
       key::distribution("md_noise", ranges.md_noise, positive, "standard deviation of white noise on it",
                         "MD"),
-      key::distribution(
-          "limit", ranges.limit, positive,
-          "shift of both soft limits of a CV over its range (1 where a side has none); either sign", "1"),
+      key::distribution("limit", ranges.limit, positive,
+                        "shift of both soft limits of a CV over its range (over 1 if a side has no limit), "
+                        "with either sign",
+                        "1"),
       impact_key(ranges.impact,
-                 "effect to which every fault is scaled, as for a mismatch; an MV that is held has no size",
-                 "1"),
+                 "effect to which every fault is scaled, as for a mismatch; a held MV has no size", "1"),
       key::check(refuse_no_fault)};
 }
 
@@ -349,8 +358,8 @@ OptionKeys onset_keys(Study& study) {
                             "sample at which they begin, rounded down", "samples")
               .allow("draws >= 0 and below `simulation.samples`"),
           key::distribution("growth", ranges.growth, NumberRule::at_least(0),
-                            "number of samples over which they grow linearly; as long as the record: a "
-                            "drift. Valves, limits and held MVs change at once",
+                            "number of samples over which they grow linearly; a growth as long as the record "
+                            "is a drift. Valves, limits and held MVs change at once",
                             "samples")
               .allow("draws >= 0; `{constant = 0}` for a nonlinear plant"),
           key::check(check_onset)};

@@ -55,15 +55,16 @@ OptionKey variables(const char* name, ForeignVariables& group,
 }
 
 OptionKeys common_keys(ForeignPlant& plant) {
-  return {key::number("settle", plant.options.settle, NumberRule::positive(),
-                      "time for which inputs are held until the plant is taken to be at rest")
-              .required(),
-          key::number("settle_tolerance", plant.options.settle_tolerance, NumberRule::positive(),
-                      "largest change of an output over the last tenth of `settle`, relative to max(1, "
-                      "abs(y)); a loop whose plant changes more is `failed`"),
-          key::time_limit(
-              plant.options.time_limit,
-              "wall-clock seconds that one step or the start may take; a loop that needs more is `failed`")};
+  return {
+      key::number("settle", plant.options.settle, NumberRule::positive(),
+                  "time for which inputs are held at the start; after it the plant is taken to be at rest")
+          .required(),
+      key::number("settle_tolerance", plant.options.settle_tolerance, NumberRule::positive(),
+                  "largest change of an output over the last tenth of `settle`, relative to max(1, "
+                  "abs(y)); a loop whose plant changes more is `failed`"),
+      key::time_limit(
+          plant.options.time_limit,
+          "wall-clock seconds that one step or the start may take; a loop that needs more is `failed`")};
 }
 
 OptionKey name_key(ForeignVariable& entry, const char* meaning, const char* allowed) {
@@ -71,8 +72,9 @@ OptionKey name_key(ForeignVariable& entry, const char* meaning, const char* allo
 }
 
 OptionKey variable_key(ForeignVariable& entry, const char* allowed) {
-  OptionKey made =
-      key::text("variable", entry.variable, "its variable in the FMU").otherwise("`name`").allow(allowed);
+  OptionKey made = key::text("variable", entry.variable, "name of its variable in the FMU")
+                       .otherwise("`name`")
+                       .allow(allowed);
   made.reader = [&entry](const TomlTable& table, const OptionKey& key) {
     entry.variable = read_text_or(table, key.name, entry.name);
   };
@@ -101,30 +103,34 @@ OptionKeys output_keys(ForeignVariable& entry, const PlantModel& plant) {
     const std::vector<std::string> names = variable_names(plant.cvs);
     entry.name = names[read_one_of(table, key, names)];
   };
-  return {key::option("name", "text", "which one").required().allow("a CV; no two alike").read(read_name),
+  return {key::option("name", "text", "name of the parameter")
+              .required()
+              .allow("a CV; no two alike")
+              .read(read_name),
           variable_key(entry, "a Real of causality output or local")};
 }
 
 OptionKeys parameter_keys(ForeignVariable& entry) {
-  return {
-      name_key(entry,
-               "its name in the FMU or in `reset`, and in `scenario[].parameter[]` and "
-               "`mismatch.plant_parameter[]`",
-               "of an FMU a Real of causality parameter"),
-      key::number("value", entry.value, NumberRule::finite(), "its nominal value, which is set").required()};
+  return {name_key(entry,
+                   "its name in the FMU or in `reset`, and in `scenario[].parameter[]` and "
+                   "`mismatch.plant_parameter[]`",
+                   "of an FMU a Real of causality parameter"),
+          key::number("value", entry.value, NumberRule::finite(), "nominal value, which the study sets")
+              .required()};
 }
 
 OptionKeys fmu_keys(ForeignPlant& plant, const PlantModel& model) {
   OptionKeys keys{
       key::text("file", plant.file,
-                "path, from the folder of the study file; for a study of an archive from the current folder")
+                "path, relative to the folder of the study file; in a study that comes from an archive, "
+                "relative to the current folder")
           .required()
           .allow("an FMU with a library for linux64"),
       key::number("time_factor", plant.time_factor, NumberRule::positive(),
                   "time units of the FMU (usually seconds) in one time unit of the study: 60 for `\"min\"`"),
       key::option("step", "number",
-                  "longest communication step, in the time of the FMU; a sample is divided into equal steps, "
-                  "with inputs held")
+                  "longest communication step, in the time of the FMU. Each sample is divided into equal "
+                  "steps, and inputs are held")
           .otherwise("a sample is one")
           .allow("> 0")
           .read([&plant](const TomlTable& table, const std::string& key) {
@@ -138,7 +144,7 @@ OptionKeys fmu_keys(ForeignPlant& plant, const PlantModel& model) {
   keys.push_back(variables(
                      "output", plant.outputs,
                      [&model](ForeignVariable& entry) { return output_keys(entry, model); },
-                     "CVs whose variable has another name than the CV, 1000 at most")
+                     "CVs whose variable has a name of its own in the FMU, 1000 at most")
                      .allow("CVs"));
   keys.push_back(variables("parameter", plant.parameters, parameter_keys,
                            "parameters that the study sets and that mismatches can change, 1000 at most"));
@@ -243,7 +249,9 @@ OptionKeys foreign_keys() {
               .otherwise("none")
               .allow("not with `simulated`")
               .with("", keys_of(fmu_keys)),
-          key::option("program", "table", "the plant is a program that answers lines of JSON, likewise")
+          key::option("program", "table",
+                      "the plant is a program that answers lines of JSON; the controller, T0 and y_sim keep "
+                      "the linear model")
               .otherwise("none")
               .allow("not with `simulated` or `fmu`")
               .with("", keys_of(program_keys))};

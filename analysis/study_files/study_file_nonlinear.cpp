@@ -21,17 +21,17 @@ constexpr std::size_t kMaxParameters = 200;  // a bound on what a file can make 
 constexpr const char* kNonlinear = "plant.simulated = \"nonlinear\", plant.fmu or plant.program";
 
 OptionKeys integration_keys(OdeOptions& options) {
-  OptionKeys keys{
-      key::choice("integrator", options.method, {"runge-kutta", "bdf"},
-                  "which method integrates its equations ([plants.md](plants.md)); `\"bdf\"` for stiff ones"),
-      key::number("relative_tolerance", options.relative_tolerance, NumberRule::positive(),
-                  "of the integration, local error of a step relative to the state")
-          .allow("1e-13 to below 1"),
-      key::number("absolute_tolerance", options.absolute_tolerance, NumberRule::positive(),
-                  "of the integration, in the unit of the state"),
-      key::whole("step_limit", options.step_limit, 1, std::numeric_limits<int>::max(),
-                 "integration steps allowed per sample; a loop that needs more is `failed`")
-          .allow(">= 1")};
+  OptionKeys keys{key::choice("integrator", options.method, {"runge-kutta", "bdf"},
+                              "method that integrates the equations of the plant ([plants.md](plants.md)); "
+                              "`\"bdf\"` for stiff ones"),
+                  key::number("relative_tolerance", options.relative_tolerance, NumberRule::positive(),
+                              "tolerance of the integration: local error of a step, relative to the state")
+                      .allow("1e-13 to below 1"),
+                  key::number("absolute_tolerance", options.absolute_tolerance, NumberRule::positive(),
+                              "tolerance of the integration, in the unit of the state"),
+                  key::whole("step_limit", options.step_limit, 1, std::numeric_limits<int>::max(),
+                             "integration steps allowed per sample; a loop that needs more is `failed`")
+                      .allow(">= 1")};
   for (OptionKey& key : keys)
     key.allowed += "; with `\"nonlinear\"`";
   return keys;
@@ -39,7 +39,7 @@ OptionKeys integration_keys(OdeOptions& options) {
 
 OptionKey simulated_key(bool& nonlinear) {
   return key::choice("simulated", nonlinear, {"linear", "nonlinear"},
-                     "which plant the loops run on. The controller, T0 and y_sim keep the linear model")
+                     "form of the plant in the loops. The controller, T0 and y_sim keep the linear model")
       .allow("`\"linear\"`, or `\"nonlinear\"` for a catalogue plant that has [a nonlinear form](plants.md)");
 }
 
@@ -72,7 +72,7 @@ ParameterChange read_change(const TomlTable& table, const NonlinearModel& model)
 }
 
 OptionKeys change_keys(ParameterChange&) {
-  return {key::option("name", "text", "which one")
+  return {key::option("name", "text", "name of the parameter")
               .otherwise("required")
               .allow("a parameter of the plant ([plants.md](plants.md)), each once in a scenario"),
           key::option("value", "number", "value in the plant", "of the parameter")
@@ -100,7 +100,7 @@ OptionKeys range_keys(PlantParameterRange& range, const Study& study) {
       });
   };
   return {
-      key::option("name", "text", "which one")
+      key::option("name", "text", "name of the parameter")
           .required()
           .allow("a parameter of the nonlinear plant")
           .read(read_name),
@@ -185,8 +185,8 @@ OptionKey plant_parameters_key(std::vector<PlantParameterRange>& ranges, const S
              "plant_parameter", kMaxParameters,
              [&study](ListedRange& listed) { return range_keys(listed.range, study); },
              [&ranges](const TomlTable&, ListedRange& listed) { ranges.push_back(listed.range); },
-             "parameters of a nonlinear plant, of which a mismatch changes one, all equally often; it then "
-             "changes no channels")
+             "parameters of a nonlinear plant. A mismatch changes one of them, each equally often, and no "
+             "channel")
       .allow("of a nonlinear plant")
       .after(check_plant);
 }

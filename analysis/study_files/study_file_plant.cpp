@@ -36,10 +36,9 @@ OptionKeys channel_keys(ChannelEntry& channel, const PlantModel& model) {
                       .allow("name of a CV"),
                   key::one_of(
                       "input", channel.input, [&] { return input_names(model); },
-                      "its input; a channel can be listed once")
+                      "input of the channel; each channel is listed at most once")
                       .allow("name of an MV or MD")};
-  for (OptionKey& key :
-       transfer_function_keys("input", "poles with negative real parts, and at most one at 0"))
+  for (OptionKey& key : transfer_function_keys("input", "poles with negative real parts; one pole may be 0"))
     keys.push_back(std::move(key));
   return keys;
 }

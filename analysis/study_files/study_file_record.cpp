@@ -40,12 +40,11 @@ OptionKeys bad_keys(RecordOptions& options) {
             check_spells(table, options.bad_share, options.bad_length);
           }),
           key::choice("value", options.bad_value,
-                      "what stands there: the last good value, or one far off, the same throughout"),
+                      "value during a spell: the last good value, or one value that is far off"),
           key::number("size", options.bad_size, NumberRule::finite(),
-                      "where a value that is off scale stands, from the operating point",
-                      "noise standard deviations"),
+                      "distance of an off-scale value from the operating point", "noise standard deviations"),
           key::flag("quality", options.bad_quality,
-                    "the record has the quality of each value, so that bad ones are left out like gaps, and "
+                    "the record has the quality of each value, so that bad values are left out like gaps and "
                     "filled as `missing.fill` says")};
 }
 
@@ -69,10 +68,11 @@ OptionKeys candidates_keys(RecordOptions& options) {
   return {key::whole("count", options.candidates, 1, RecordOptions::kMostCandidates,
                      "number of signals in each loop", "signals")
               .required(),
-          key::number("share", options.candidate_share, NumberRule::share(),
-                      "probability that one of them is the signal v that drives the first disturbance of an "
-                      "experiment. All others are decoys: of the form of v, with random numbers of their own",
-                      "1")};
+          key::number(
+              "share", options.candidate_share, NumberRule::share(),
+              "probability that one of them is the signal v that drives the first disturbance of an "
+              "experiment. All others are decoys: they have the form of v and random numbers of their own",
+              "1")};
 }
 
 /// Sizes are in standard deviations of the noise: without noise they would all be 0.
@@ -124,13 +124,13 @@ OptionKeys record_keys(Study& study) {
   RecordOptions& options = study.record;
   return {
       key::choice("sampling", options.sampling,
-                  "what a row has of a CV: its measurement at the sample, or its mean over the sample time "
-                  "before it, as averages of a historian are. The controller has measurements in either "
-                  "case"),
+                  "value of a CV in a row. `\"snapshot\"`: the measurement at the sample. `\"average\"`: the "
+                  "mean over the sample time before it, as the average of a historian. The controller gets "
+                  "measurements in either case"),
       key::option("shift", "number, or table",
-                  "by how much later than its row the value of a variable is, from 0.5 for half a sample to "
-                  "-1 for one sample earlier; one for all CVs, or `{y1 = -0.5, u1 = 1}` with some CVs, MVs "
-                  "and MDs. MVs and MDs are held over a sample",
+                  "time of the value of a variable after the time of its row: 0.5 is half a sample later, -1 "
+                  "is one sample earlier. One number for all CVs, or `{y1 = -0.5, u1 = 1}` with some CVs, "
+                  "MVs and MDs. MVs and MDs are held over a sample",
                   "samples")
           .otherwise("0 for each variable")
           .allow(fmt::format("-{} to {}", RecordOptions::kMostLate, RecordOptions::kMostEarly))
@@ -142,23 +142,23 @@ OptionKeys record_keys(Study& study) {
                   "noise standard deviations")
           .otherwise("0: none"),
       key::optional_table(
-          "missing", [&options] { return missing_keys(options); }, "gaps, each CV with its own"),
+          "missing", [&options] { return missing_keys(options); }, "gaps, independent for each CV"),
       key::optional_table(
           "bad", [&options] { return bad_keys(options); },
-          "spells of bad values, each CV with its own, with or without their quality"),
+          "spells of bad values, independent for each CV, with or without their quality"),
       key::number("exception", options.exception, NumberRule::at_least(0),
-                  "tolerance of exception reporting: a value is reported where it differs by more from the "
-                  "last reported one, which the reader holds",
+                  "tolerance of exception reporting: a value is reported if it differs by more than this "
+                  "from the last reported value, which the reader holds",
                   "noise standard deviations")
           .otherwise("0: every sample is reported"),
       key::number("compression", options.compression, NumberRule::at_least(0),
                   "tolerance of the swinging-door compression. The reader interpolates between archived "
-                  "points, so no sample is off by more",
+                  "points, so no sample is off by more than this",
                   "noise standard deviations")
           .otherwise("0: every sample is kept"),
       key::optional_table(
           "candidates", [&options] { return candidates_keys(options); },
-          "further signals that the model does not have: some drive a disturbance, others are decoys"),
+          "further signals that are not in the model: some drive a disturbance, others are decoys"),
       key::check([&study](const TomlTable& table) { refuse_without_noise(table, study); })};
 }
 

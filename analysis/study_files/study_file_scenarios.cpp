@@ -31,7 +31,7 @@ OptionKeys joined(OptionKeys keys, const OptionKeys& others) {
 /// Another transfer function in the place of a channel.
 OptionKeys other_channel_keys() {
   return transfer_function_keys(
-      "input", "poles with negative real parts, and at most one at 0 where the model of the CV has one");
+      "input", "poles with negative real parts; one pole may be 0 if the model of the CV has one");
 }
 
 /// A changed parameter of a channel.
@@ -86,7 +86,8 @@ OptionKeys mismatch_keys(ListedMismatch& listed, const Study& study) {
           .allow("name of a CV"),
       key::one_of(
           "input", listed.at.input, [&study] { return input_names(study.plant); },
-          "its input; a channel can be listed once in a scenario. An MD: mismatch of the feed-forward")
+          "input of the channel; a scenario lists a channel at most once. With an MD it is a mismatch of the "
+          "feed-forward")
           .allow("name of an MV or MD"),
       key::check(check_form)};
   return joined(joined(joined(where, change_keys(listed.at, listed.mismatches)), other_channel_keys()),
@@ -183,7 +184,9 @@ OptionKeys signal_keys(DisturbanceSignal& signal, int samples) {
   };
   return {key::check(refuse_two_signals),
           key::option("white", "number",
-                      "white normal v with `white` times `disturbance.v_standard_deviation`", "1")
+                      "v is white and normal, with `white` times the standard deviation "
+                      "`disturbance.v_standard_deviation`",
+                      "1")
               .otherwise("1")
               .allow("> 0"),
           key::option("hold", "whole number", "samples between new values of a white v", "samples")
@@ -192,7 +195,7 @@ OptionKeys signal_keys(DisturbanceSignal& signal, int samples) {
           form_key<Sine>("sine", signal, sine_keys, "v = amplitude sin(2 pi t / period)"),
           form_key<Ramp>("ramp", signal, ramp_keys, "v = slope (t - start) from t = start on"),
           key::list<StepSequence::Step>("steps", kMaxScenarios * kMaxScenarios, keys_of_step, take_step,
-                                        "v is 0 at first and then keeps each level")
+                                        "v is 0 at first and then stays at each level until the next step")
               .allow("one or more"),
           key::check(read_white)};
 }
@@ -232,13 +235,16 @@ OptionKeys disturbance_keys(Disturbance& disturbance, const Study& study) {
     else if (!table.has("white") && !table.has("sine") && !table.has("ramp") && !table.has("steps"))
       table.refuse("", "neither a signal nor a transfer function", "at least one of the two");
   };
-  const OptionKeys place{key::check(read_place),
-                         key::option("cv", "text", "several disturbances of a CV add up")
-                             .otherwise("this or `input`")
-                             .allow("name of a CV"),
-                         key::option("input", "text", "several of an input add up; held over a sample")
-                             .otherwise("this or `cv`")
-                             .allow("inner input of a nonlinear plant ([plants.md](plants.md))")};
+  const OptionKeys place{
+      key::check(read_place),
+      key::option("cv", "text", "CV that the disturbance is added to; several disturbances of a CV add up")
+          .otherwise("this or `input`")
+          .allow("name of a CV"),
+      key::option("input", "text",
+                  "inner input that the disturbance is added to, held over a sample; several disturbances of "
+                  "an input add up")
+          .otherwise("this or `cv`")
+          .allow("inner input of a nonlinear plant ([plants.md](plants.md))")};
   return joined(joined(joined(place, disturbance_model_keys()),
                        signal_keys(disturbance.signal, study.simulation.samples)),
                 {key::check(read_Gd)});
@@ -299,8 +305,8 @@ OptionKeys scenario_keys(Scenario& scenario, const Study& study) {
           "unmeasured disturbances")
           .allow("1 to 200"),
       key::option("affected", "list of texts",
-                  "the truth: CVs that a diagnosis should flag. A CV without a fault of its own is affected "
-                  "by what is wrong in the scenario")
+                  "the truth: CVs that a diagnosis should flag. A CV that is listed without a fault of its "
+                  "own is affected by the faults of the scenario")
           .otherwise("the CVs with a fault; required with a `parameter` or an inner `input`")
           .allow("names of CVs, none twice; `[]` for none"),
       key::check(

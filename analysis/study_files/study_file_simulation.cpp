@@ -37,22 +37,21 @@ Eigen::VectorXd read_deviations(const TomlTable& parent, const std::string& key,
 }
 
 OptionKeys noise_keys(NoiseOptions& noise) {
-  return {
-      key::choice(
-          "distribution", noise.distribution, {"normal", "student", "laplace"},
-          "of the innovations, with variance 1. `\"student\"` has 4 degrees of freedom: some values far out"),
-      key::number("autocorrelation", noise.autocorrelation, NumberRule::inside(-1, 1),
-                  "phi of e(k) = phi e(k-1) + sqrt(1 - phi^2) w(k), w the innovations; the variance stays",
-                  "1"),
-      key::distribution(
-          "factor", noise.factor, NumberRule::at_least(0),
-          "factor of the standard deviations of all CVs, drawn for each experiment. The basis case has 1: "
-          "noise of another size than in the benchmark. In the archive as `noise_factor`",
-          "1"),
-      sequence_key(noise.sequence,
-                   "whether every experiment draws its own innovations, or all have the same, drawn once for "
-                   "the study. The basis case has the shared ones as well; its repetition "
-                   "(`diagnosis.self_check`) has others")};
+  return {key::choice("distribution", noise.distribution, {"normal", "student", "laplace"},
+                      "distribution of the innovations, with variance 1. `\"student\"` has 4 degrees of "
+                      "freedom, so some values lie far out"),
+          key::number(
+              "autocorrelation", noise.autocorrelation, NumberRule::inside(-1, 1),
+              "phi of e(k) = phi e(k-1) + sqrt(1 - phi^2) w(k), w the innovations; the variance stays", "1"),
+          key::distribution("factor", noise.factor, NumberRule::at_least(0),
+                            "factor of the noise standard deviations of all CVs, drawn for each experiment; "
+                            "the basis case has 1, so an experiment has noise of another size than the "
+                            "benchmark. The archive has it as `noise_factor`",
+                            "1"),
+          sequence_key(noise.sequence,
+                       "`\"each\"`: every experiment draws its own innovations. `\"shared\"`: all have the "
+                       "same, drawn once for the study, also the basis case; only its repetition "
+                       "(`diagnosis.self_check`) has others")};
 }
 
 /// The CVs with a setpoint.
@@ -75,7 +74,7 @@ OptionKeys step_keys(SignalStep& step, int samples) {
               .required()
               .allow("0 to `samples` - 1, one step a sample and variable"),
           key::number("level", step.level, NumberRule::finite(),
-                      "level from there on; an MD begins at 0, a setpoint at `setpoint`", "MD or CV")
+                      "level from that sample on; an MD begins at 0, a setpoint at `setpoint`", "MD or CV")
               .required()};
 }
 
@@ -107,22 +106,21 @@ void take_step(const TomlTable& table, SignalStep& step, Study& study) {
 
 OptionKeys off_keys(OffSpell& spell, const Study& study) {
   const int samples = study.simulation.samples;
-  return {
-      key::option("mv", "text", "the MV that operators hold")
-          .otherwise("this or `cv`")
-          .allow("name of an MV"),
-      key::option("cv", "text", "the CV that the controller leaves alone")
-          .otherwise("this or `mv`")
-          .allow("name of a CV"),
-      key::whole("sample", spell.sample, 0, samples - 1, "first sample at which it is off", "samples")
-          .required()
-          .allow("0 to `samples` - 1"),
-      key::whole("samples", spell.samples, 1, samples, "for how long", "samples")
-          .required()
-          .allow("1 to `simulation.samples`; before the next table of this variable"),
-      key::option("level", "number", "of an MV: where it is held, which may be outside of its limits", "MV")
-          .otherwise("where it was")
-          .allow("finite")};
+  return {key::option("mv", "text", "the MV that operators hold")
+              .otherwise("this or `cv`")
+              .allow("name of an MV"),
+          key::option("cv", "text", "CV that the controller leaves alone")
+              .otherwise("this or `mv`")
+              .allow("name of a CV"),
+          key::whole("sample", spell.sample, 0, samples - 1, "first sample at which it is off", "samples")
+              .required()
+              .allow("0 to `samples` - 1"),
+          key::whole("samples", spell.samples, 1, samples, "for how long", "samples")
+              .required()
+              .allow("1 to `simulation.samples`; before the next table of this variable"),
+          key::option("level", "number", "position at which an MV is held, also outside of its limits", "MV")
+              .otherwise("where it was")
+              .allow("finite")};
 }
 
 /// With a CV less, something else has to determine the moves.
@@ -179,7 +177,7 @@ void sort_off(const TomlTable& simulation, Study& study) {
 OptionKeys random_steps_keys(SimulationOptions& options) {
   return {key::check([&options](const TomlTable&) { options.random_steps = true; }),
           key::distribution("interval", options.step_interval, NumberRule::at_least(1),
-                            "from one step of an MD to its next", "samples"),
+                            "samples from one step of an MD to the next", "samples"),
           key::distribution("level", options.step_level, NumberRule::finite(), "level after a step", "MD")
               .allow("any")};
 }
@@ -228,8 +226,8 @@ OptionKeys md_noise_keys(Study& study) {
         read_deviations(table, key, "MD", variable_names(study.plant.mds));
   };
   return {key::option("standard_deviation", "number, or table",
-                      "of the normal variation; one for all MDs, or `{d1 = 0.1, d2 = 0.2}` with every MD. It "
-                      "is measured without error",
+                      "standard deviation of the normal variation: one number for all MDs, or `{d1 = 0.1, d2 "
+                      "= 0.2}` with every MD. The variation is measured without error",
                       "MD")
               .required()
               .allow(">= 0")
@@ -241,16 +239,16 @@ OptionKeys md_noise_keys(Study& study) {
 
 OptionKeys dither_keys(Dither& dither, const Study& study) {
   dither.hold = 1;
-  return {
-      key::one_of(
-          "mv", dither.mv, [&study] { return variable_names(study.plant.mvs); }, "the MV that it is added to")
-          .allow("name of an MV"),
-      key::number("amplitude", dither.amplitude, NumberRule::positive(),
-                  "the signal is + or - this, with the same probability", "MV")
-          .required(),
-      key::whole("hold", dither.hold, 1, study.simulation.samples, "samples between two draws of the sign",
-                 "samples")
-          .allow("1 to `samples`")};
+  return {key::one_of(
+              "mv", dither.mv, [&study] { return variable_names(study.plant.mvs); },
+              "MV that the signal is added to")
+              .allow("name of an MV"),
+          key::number("amplitude", dither.amplitude, NumberRule::positive(),
+                      "the signal is + or - this, with the same probability", "MV")
+              .required(),
+          key::whole("hold", dither.hold, 1, study.simulation.samples,
+                     "samples between two draws of the sign", "samples")
+              .allow("1 to `samples`")};
 }
 
 /// MDs are stepped in one of two ways. A loop without any excitation has to be asked for by name: what the
@@ -319,7 +317,8 @@ OptionKeys simulation_keys(Study& study) {
           .also("at least the longest moving window + 20; at most 5e7 over the variables of the plant"),
       key::check([&study](const TomlTable& table) { refuse_large_record(table, study); }),
       key::option("noise_standard_deviation", "number, or table",
-                  "of the measurement noise; one for all CVs, or `{y1 = 0.01, y2 = 0.02}` with every CV",
+                  "standard deviation of the measurement noise: one number for all CVs, or `{y1 = 0.01, y2 = "
+                  "0.02}` with every CV",
                   "CV")
           .required()
           .allow(">= 0")
@@ -330,12 +329,11 @@ OptionKeys simulation_keys(Study& study) {
           .otherwise("white, normal, of the same size in every experiment"),
       key::option(
           "excitation", "text",
-          "which loops share the signals below. `\"shared\"`: all loops have the same ones, the benchmark "
-          "among them. `\"each\"`: every loop has its own: random steps and variations drawn anew, listed "
-          "steps at other "
-          "times, in another order and, of MDs and setpoints, by half of the listed move to all of it. "
-          "`\"none\"`: nothing but noise and faults moves the loop")
-          .otherwise("`\"shared\"`, where anything excites")
+          "whether loops share the signals below. `\"shared\"`: all loops, also the benchmark, have the same "
+          "signals. `\"each\"`: every loop has its own. Random steps and variations are drawn anew; listed "
+          "steps come at other times and in another order, and those of MDs and setpoints have half to all "
+          "of the listed size. `\"none\"`: only noise and faults move the loop")
+          .otherwise("`" shared "` with any excitation")
           .allow("`\"none\"` without anything that excites; `\"shared\"`, `\"each\"`"),
       key::list<SignalStep>(
           "step", kMaxSteps, [&options](SignalStep& step) { return step_keys(step, options.samples); },
@@ -349,23 +347,23 @@ OptionKeys simulation_keys(Study& study) {
       key::list<ListedLimits>(
           "limit_step", kMaxSteps, [&study](ListedLimits& step) { return limit_step_keys(step, study); },
           [&study](const TomlTable& table, const ListedLimits& step) { take_limit_step(table, step, study); },
-          "moves of soft limits, as an operator makes them: the controller has them from their sample on")
+          "moves of soft limits, as an operator makes them; the controller knows each from its sample on")
           .allow("one or more"),
       key::optional_table(
           "md_noise", [&study] { return md_noise_keys(study); },
-          "a variation of every measured disturbance, added to its steps, drawn once for the study")
+          "random variation of every measured disturbance, added to its steps and drawn once for the study")
           .after(refuse_md_noise),
       key::list<Dither>(
           "dither", kMaxSteps, [&study](Dither& dither) { return dither_keys(dither, study); },
           [&options](const TomlTable&, Dither& dither) { options.dither.push_back(dither); },
-          "test signals, added to the moves of MVs, the same under every seed; those of one MV add up")
+          "test signals that are added to the moves of MVs, the same under every seed; several signals of "
+          "one MV add up")
           .allow("one or more"),
       key::list<OffSpell>(
           "off", kMaxSteps, [&study](OffSpell& spell) { return off_keys(spell, study); },
           [&study](const TomlTable& table, OffSpell& spell) { take_off(table, spell, study); },
-          "MVs and CVs that are switched off for a while, in every experiment; several tables of one MV in "
-          "turn "
-          "are moves of its operator")
+          "MVs and CVs that are switched off for a while, in every experiment. Several tables of one MV, one "
+          "after the other, are moves of its operator")
           .allow("one or more"),
       key::check([&study](const TomlTable& table) {
         sort_steps(study.simulation);

@@ -35,22 +35,22 @@ void refuse_sizes_of_nothing(const TomlTable& background, const BackgroundRanges
 
 OptionKeys background_keys(BackgroundRanges& ranges, const Study& study) {
   const NumberRule rule = NumberRule::at_least(0);
-  return {
-      key::distribution("cv_size", ranges.cv_size, rule,
-                        "standard deviation of the disturbance that is added to a CV",
-                        "noise standard deviations"),
-      key::distribution(
-          "mv_size", ranges.mv_size, rule,
-          "standard deviation of the disturbance that is added to an MV on its way to the plant",
-          "width of the hard limits"),
-      key::distribution("time_constant", ranges.time_constant, rule,
-                        "of the autocorrelation exp(-k / `time_constant`) of both; 0: white", "samples"),
-      key::distribution("swell", ranges.swell, NumberRule::positive(),
-                        "how much larger they are at their largest than at their smallest: their size comes "
-                        "and goes once a record, in each loop at another time",
-                        "1"),
-      key::check(
-          [&ranges, &study](const TomlTable& table) { refuse_sizes_of_nothing(table, ranges, study); })};
+  return {key::distribution("cv_size", ranges.cv_size, rule,
+                            "standard deviation of the disturbance that is added to a CV",
+                            "noise standard deviations"),
+          key::distribution(
+              "mv_size", ranges.mv_size, rule,
+              "standard deviation of the disturbance that is added to an MV on its way to the plant",
+              "width of the hard limits"),
+          key::distribution(
+              "time_constant", ranges.time_constant, rule,
+              "time constant of the autocorrelation exp(-k / `time_constant`) of both; 0: white", "samples"),
+          key::distribution("swell", ranges.swell, NumberRule::positive(),
+                            "ratio of their largest to their smallest size: their size rises and falls once "
+                            "a record, in each loop at another time",
+                            "1"),
+          key::check(
+              [&ranges, &study](const TomlTable& table) { refuse_sizes_of_nothing(table, ranges, study); })};
 }
 
 OptionKeys parameter_keys(WorldParameter& parameter, const Study& study) {
@@ -71,7 +71,7 @@ OptionKeys parameter_keys(WorldParameter& parameter, const Study& study) {
         if (each.name == parameter.name)
           table.located("factor", [&] { study.nonlinear->model.check({{each.name, end * each.nominal}}); });
   };
-  return {key::option("name", "text", "which one")
+  return {key::option("name", "text", "name of the parameter")
               .required()
               .allow("a parameter of the nonlinear plant, each once")
               .read(read_name),
@@ -132,63 +132,61 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
         table.refuse("name", fmt::format("'{}' a second time", parameter.name), "every parameter once");
     ranges.plant_parameters.push_back(parameter);
   };
-  return {
-      key::whole("count", ranges.count, 1, kMostWorlds,
-                 "how many worlds there are; the experiments of each kind go to them in turn. Calibration "
-                 "loops have "
-                 "as many of their own"),
-      key::distribution("gain_factor", ranges.gain_factor, positive,
-                        "factor of the gain of a channel of the plant, drawn for each channel", "1"),
-      key::distribution("time_constant_factor", ranges.time_constant_factor, positive,
-                        "factor of its time constants", "1")
-          .also(kNoLongMemory),
-      key::distribution("dead_time_factor", ranges.dead_time_factor, rule, "factor of its dead time", "1")
-          .also(kNoLongMemory),
-      key::distribution("dead_time_shift", ranges.dead_time_shift, NumberRule::finite(),
-                        "added to its dead time; what comes out below 0 is 0", "time")
-          .also(kNoLongMemory),
-      key::distribution("extra_lag", ranges.extra_lag, rule,
-                        "time constant of a further lag, over the residence time of the channel", "1")
-          .also(kNoLongMemory),
-      key::distribution("noise_factor", ranges.noise_factor, rule,
-                        "factor of the measurement noise of a CV, in the benchmark as well", "1"),
-      key::distribution(
-          "valve_curvature", ranges.valve_curvature, NumberRule::inside(-1, 1),
-          "c of the valve of each MV, of which the plant gets u + c (u - a) (b - u) / (b - a), a "
-          "and b the hard limits, less what this adds where the loop starts: its gain goes from "
-          "1 + c to 1 - c",
-          "1"),
-      key::check([&ranges, &study](const TomlTable& world) {
-        const Limits& hard = study.controller.mv_hard;
-        if (!(ranges.valve_curvature == Distribution::constant(0.0)) &&
-            !((hard.upper - hard.lower).allFinite() && (hard.upper.array() > hard.lower.array()).all()))
-          world.refuse("valve_curvature", "valves of MVs without a range",
-                       "controller.mv.NAME.hard with two different numbers for every MV");
-      }),
-      key::whole("cost_loops", ranges.cost_loops, 1, kMostCostLoops,
-                 "pairs of loops, with the fault and without it, over whose noise its cost is averaged"),
-      key::whole("repair_loops", ranges.repair_loops, 0, kMostCostLoops,
-                 "loops over whose noise the gain of repairing a channel is averaged, each run once for "
-                 "every channel that differs from the model; 0: `repair_gain` is not computed"),
-      key::number(
-          "repair_screen", ranges.repair_screen, NumberRule::share(),
-          "share of the largest gain in the first of these loops: a channel whose repair brings less in "
-          "it is not run in the others, and its gain has no error; 0: every channel is run in all of "
-          "them",
-          "1"),
-      key::list<WorldParameter>(
-          "plant_parameter", kMostParameters,
-          [&study](WorldParameter& parameter) { return parameter_keys(parameter, study); }, take,
-          "parameters of a nonlinear plant, a program or an FMU that differ, in the place of the keys of "
-          "channels")
-          .allow("one or more")
-          .after(refuse_parameters),
-      key::check(refuse_channels),
-      key::check([&ranges, &study](const TomlTable& world) { refuse_long_world(world, ranges, study); }),
-      key::table(
-          "background", [&ranges, &study] { return background_keys(ranges.background, study); },
-          "disturbances that are always there: independent first-order noise on every CV and every MV, drawn "
-          "anew in each loop")};
+  return {key::whole("count", ranges.count, 1, kMostWorlds,
+                     "number of worlds; the experiments of each kind go to them in turn. Calibration loops "
+                     "have as many worlds of their own"),
+          key::distribution("gain_factor", ranges.gain_factor, positive,
+                            "factor of the gain of a channel of the plant, drawn for each channel", "1"),
+          key::distribution("time_constant_factor", ranges.time_constant_factor, positive,
+                            "factor of the time constants of a channel", "1")
+              .also(kNoLongMemory),
+          key::distribution("dead_time_factor", ranges.dead_time_factor, rule,
+                            "factor of the dead time of a channel", "1")
+              .also(kNoLongMemory),
+          key::distribution("dead_time_shift", ranges.dead_time_shift, NumberRule::finite(),
+                            "added to the dead time of a channel; a negative sum becomes 0", "time")
+              .also(kNoLongMemory),
+          key::distribution("extra_lag", ranges.extra_lag, rule,
+                            "time constant of a further lag, over the residence time of the channel", "1")
+              .also(kNoLongMemory),
+          key::distribution("noise_factor", ranges.noise_factor, rule,
+                            "factor of the measurement noise of a CV, in the benchmark as well", "1"),
+          key::distribution("valve_curvature", ranges.valve_curvature, NumberRule::inside(-1, 1),
+                            "curvature c of the valve of each MV: the plant gets u + c (u - a) (b - u) / (b "
+                            "- a), where a and b are the hard limits, less the value of this term at the "
+                            "start of the loop. The gain of the valve goes from 1 + c to 1 - c",
+                            "1"),
+          key::check([&ranges, &study](const TomlTable& world) {
+            const Limits& hard = study.controller.mv_hard;
+            if (!(ranges.valve_curvature == Distribution::constant(0.0)) &&
+                !((hard.upper - hard.lower).allFinite() && (hard.upper.array() > hard.lower.array()).all()))
+              world.refuse("valve_curvature", "valves of MVs without a range",
+                           "controller.mv.NAME.hard with two different numbers for every MV");
+          }),
+          key::whole("cost_loops", ranges.cost_loops, 1, kMostCostLoops,
+                     "pairs of loops, with the fault and without it; the cost of the fault is averaged over "
+                     "their noise"),
+          key::whole("repair_loops", ranges.repair_loops, 0, kMostCostLoops,
+                     "loops over whose noise the gain of a repair is averaged; each is run once for every "
+                     "channel that differs from the model. 0: `repair_gain` is not computed"),
+          key::number("repair_screen", ranges.repair_screen, NumberRule::share(),
+                      "share of the largest gain in the first of these loops. A channel whose repair brings "
+                      "less than this share is not run in the others, and its gain has no standard error. 0: "
+                      "every channel is run in all of them",
+                      "1"),
+          key::list<WorldParameter>(
+              "plant_parameter", kMostParameters,
+              [&study](WorldParameter& parameter) { return parameter_keys(parameter, study); }, take,
+              "parameters of a nonlinear plant, a program or an FMU that differ in a world; they take the "
+              "place of the keys for channels")
+              .allow("one or more")
+              .after(refuse_parameters),
+          key::check(refuse_channels),
+          key::check([&ranges, &study](const TomlTable& world) { refuse_long_world(world, ranges, study); }),
+          key::table(
+              "background", [&ranges, &study] { return background_keys(ranges.background, study); },
+              "disturbances that never stop: independent first-order noise on every CV and every MV, drawn "
+              "anew in each loop")};
 }
 
 }  // namespace

@@ -55,16 +55,16 @@ WrittenTransferFunction read_step_coefficients(const TomlTable& table) {
 }  // namespace
 
 OptionKeys transfer_function_keys(const std::string& input, const std::string& poles) {
-  return {key::option("gain", "number", "static gain, of `gain / (time_constant s + 1)`", "CV / " + input)
+  return {key::option("gain", "number", "static gain in `gain / (time_constant s + 1)`", "CV / " + input)
               .otherwise("none; with `time_constant`")
               .allow("finite"),
           key::option("rate_gain", "number",
-                      "of a channel that integrates, such as a flow to a level: the rate of the CV under a "
-                      "constant input of 1, `rate_gain / (s (time_constant s + 1))`",
+                      "gain of a channel that integrates, such as from a flow to a level: rate of the CV "
+                      "under a constant input of 1, in `rate_gain / (s (time_constant s + 1))`",
                       "CV / " + input + " / time")
               .otherwise("none; in place of `gain`")
               .allow("finite"),
-          key::option("time_constant", "number", "time constant, of the same", "time")
+          key::option("time_constant", "number", "time constant of these two", "time")
               .otherwise("required with `gain`, none with `rate_gain`")
               .allow("> 0"),
           key::option("numerator", "list of numbers",
@@ -81,8 +81,8 @@ OptionKeys transfer_function_keys(const std::string& input, const std::string& p
           key::option("step", "list of numbers",
                       "coefficients of the step response, as dynamic matrix control has them: values 1, 2, "
                       "... intervals after a step of 1. Simulation and prediction use these coefficients; "
-                      "after the last one its value continues, or the last slope of a channel that "
-                      "integrates. Parameters are those of a transfer function that is fitted to them",
+                      "the last value holds from there on, or the last slope if the channel integrates. The "
+                      "parameters of the channel are those of a transfer function fitted to the coefficients",
                       "CV / " + input)
               .otherwise("none; with `step_interval`")
               .allow("8 to 1000 finite numbers, until the response has settled"),
@@ -139,7 +139,7 @@ void refuse_unstable(const TomlTable& table, const TransferFunction& channel, Po
                  integrates && real_part == 0 ? "a second pole at 0"
                                               : fmt::format("a pole with real part {:.3g}", real_part),
                  allowed == PolesAtOrigin::one
-                     ? "poles with negative real parts, and at most one at 0"
+                     ? "poles with negative real parts; one pole may be 0"
                      : "poles with negative real parts, since the model of this CV has no pole at 0");
   }
 }
