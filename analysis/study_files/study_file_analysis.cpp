@@ -69,36 +69,37 @@ OptionKeys sensitivity_keys(Study& study) {
   };
   return {
       key::choice("form", options.form, {"step-response", "box-jenkins"},
-                  "what T0 is: the step responses themselves, or models identified in a record with a moving "
-                  "reference (A3.1, A3.2; not with the structure `\"by-instant\"`)"),
-      key::whole("samples", options.samples, 2, kMaxResponse,
-                 "length of the step responses, long enough to settle: after it the static gain holds",
-                 "samples"),
+                  "form of T0: the step responses themselves (A3.1), or models identified in a record with a "
+                  "moving reference (A3.2; not with the structure `\"by-instant\"`)"),
+      key::whole(
+          "samples", options.samples, 2, kMaxResponse,
+          "length of the step responses, long enough for them to settle; the static gain holds from there on",
+          "samples"),
       key::number("step_size", options.step_size, NumberRule::positive(),
-                  "size of the step of a soft limit; small, so that no other limit is met", "CV")
+                  "size of the step of a soft limit, small enough that no other limit becomes active", "CV")
           .allow("> 0, at most the narrowest range between the soft limits of the active CVs"),
       key::choice("step_direction", options.step_direction, {"into-range", "out-of-range", "mean"},
-                  "direction in which the limit is stepped. Open: a range MPC responds differently to the "
-                  "two (docs/methods.md, T0)"),
+                  "direction of the step of the limit. Open: a range MPC responds differently to the two "
+                  "directions (docs/methods.md, T0)"),
       key::some_of(
           "active_cvs", options.active_cvs, [&study] { return variable_names(study.plant.cvs); },
           "CVs whose soft limit is active. Section 6.3: at most as many as MVs")
-          .otherwise("those of the basis case")
+          .otherwise("the active ones of the basis case")
           .allow("names of CVs with a soft limit, none twice, at most as many as MVs"),
       key::check(check_active),
       key::some_of(
           "fixed_mvs", options.fixed_mvs, [&study] { return variable_names(study.plant.mvs); },
-          "MVs that are held while T0 is determined (assumption B of 3.3.3), besides those that are at a "
-          "hard limit")
+          "MVs that are held while T0 is determined (assumption B of 3.3.3), besides the MVs at a hard limit")
           .otherwise("none")
           .allow("names of MVs, none twice"),
-      key::choice("structure", options.structure, {"operating-point", "by-instant"},
-                  "whether S0 is that of the basis case throughout (assumption A), or at each sample that of "
-                  "the setpoints, soft limits and MV limits that are active there (assumption C)"),
       key::choice(
-          "switching", options.switching, {"output", "input"},
-          "with `by-instant`: whether the S0 of a sample acts on the whole past, or each error propagates "
-          "with the S0 of its own time. Open; in table 3.7 the first is nearer to the basis case"),
+          "structure", options.structure, {"operating-point", "by-instant"},
+          "`\"operating-point\"`: S0 of the basis case at every sample (assumption A). `\"by-instant\"`: at "
+          "each sample, S0 of the setpoints, soft limits and MV limits that are active there (assumption C)"),
+      key::choice("switching", options.switching, {"output", "input"},
+                  "with `by-instant`. `\"output\"`: the S0 of a sample acts on the whole past. `\"input\"`: "
+                  "each error propagates with the S0 of its own time. Open; in table 3.7 `\"output\"` is "
+                  "nearer to the basis case"),
       key::check(check_all)};
 }
 
@@ -109,7 +110,7 @@ OptionKeys s0_perturbation_keys(Study& study) {
     options.multipliers.assign(numbers.begin(), numbers.end());
     const auto place = std::adjacent_find(numbers.begin(), numbers.end(), std::greater_equal<>());
     if (place != numbers.end())
-      table.refuse(key, fmt::format("{} after {}", *(place + 1), *place), "numbers that grow");
+      table.refuse(key, fmt::format("{} after {}", *(place + 1), *place), "numbers in ascending order");
   };
   const auto names = [](const std::vector<PlantModel::Variable>& variables) {
     return [&variables] { return variable_names(variables); };
@@ -125,7 +126,7 @@ OptionKeys s0_perturbation_keys(Study& study) {
   };
   return {key::option("multipliers", "list of numbers", "factors of time constant and damping", "1")
               .required()
-              .allow("1 to 1000 numbers > 0 that grow")
+              .allow("1 to 1000 numbers > 0 in ascending order")
               .read(read_multipliers),
           key::some_of("cvs", options.cvs, names(study.plant.cvs), "CVs whose experiments are examined")
               .otherwise("all at an active limit")
@@ -147,17 +148,17 @@ OptionKeys diagnosis_keys(DiagnosisOptions& options, ChainOptions& chain) {
   const NumberRule positive = NumberRule::positive();
   return {
       key::band("impact_band", options.impact_lower, options.impact_upper, positive,
-                "an experiment with an Ivar (6.7) outside is impactful (section 6.5.2)", "1"),
+                "an experiment whose Ivar (6.7) lies outside of the band is impactful (section 6.5.2)", "1"),
       key::choice(
           "impact", options.impact,
-          "by what a fault has an impact in a world, beside the cost of the whole loop: the variance of "
-          "a CV, or its cost as the controller has it, from the onset on (`cost_ratio` of the archive)"),
+          "what shows the impact of a fault in a world, beside the cost of the whole loop: the variance of a "
+          "CV, or its cost in the controller from the onset on (`cost_ratio` of the archive)"),
       key::choice("variance_centre", options.variance_centre, {"setpoint", "mean"},
-                  "what the variances of a CV with a setpoint are taken about, (3.24) or "
-                  "(2.20); those of a CV in a range are taken about its mean"),
-      key::choice(
-          "location_distance", options.location_distance, {"linear", "logarithmic"},
-          "distance from 1 of Ivar_diag (6.8), by which the CV is located. Open; the second treats 1/2 as 2"),
+                  "centre of the variances of a CV with a setpoint, (3.24) or (2.20). For a CV in a range it "
+                  "is the mean"),
+      key::choice("location_distance", options.location_distance, {"linear", "logarithmic"},
+                  "distance of Ivar_diag (6.8) from 1, which locates the CV. Open; `\"logarithmic\"` treats "
+                  "1/2 like 2"),
       key::number("mpm_threshold", chain.mpm_threshold, NumberRule::inside(0, 1),
                   "I_MPM (6.15) above it means a mismatch (figure 6.21)", "1"),
       key::band("windows", options.shortest_window, options.longest_window,
@@ -169,13 +170,14 @@ OptionKeys diagnosis_keys(DiagnosisOptions& options, ChainOptions& chain) {
       key::whole("window_stride", options.window_stride, 1, kMaxResponse,
                  "step from one window length to the next. Open", "samples"),
       key::choice("source_population", options.source_population, {"impactful", "feasible"},
-                  "experiments for which the rates of I_MPM are counted. Open"),
-      key::choice("unstable", options.unstable, {"keep", "exclude"},
-                  "treatment of an experiment whose loop is unstable (`spectral_radius` of the archive 1 or "
-                  "more): it counts like any other, or it is left out like an infeasible one"),
+                  "experiments that the rates of I_MPM count. Open"),
+      key::choice(
+          "unstable", options.unstable, {"keep", "exclude"},
+          "treatment of an experiment whose loop is unstable (`spectral_radius` of the archive 1 or more). "
+          "`\"keep\"`: it counts like any other. `\"exclude\"`: it is left out like an infeasible one"),
       key::choice(
           "self_check", options.self_check, {"ivar", "repeat", "none"},
-          "index that must lie in the band for every CV. `\"ivar\"`: Ivar (6.7) of the basis case. "
+          "index that must lie in `self_check_band` for every CV. `\"ivar\"`: Ivar (6.7) of the basis case. "
           "`\"repeat\"`: "
           "Ivar_basis (6.22) of the basis case with other noise, for studies without excitation "
           "([methods.md](methods_thesis.md#records-and-excitation)). `\"none\"`: nothing. With the first two "

@@ -21,30 +21,27 @@ constexpr std::int64_t kShortestMonitoringWindow = kShortestWindow + kFewestCorr
 
 OptionKeys assessment_keys(AssessmentOptions& options) {
   OptionKeys keys{
-      key::choice(
-          "setpoints", options.setpoints, {"controller", "optimizer"},
-          "setpoint of a CV that is held in a range. `\"controller\"`: none, as a range has none, so methods "
-          "that need setpoints do not apply. `\"optimizer\"`: the steady state that the target optimizer "
-          "computes (2.32), which chapter 2 of the thesis uses to show the consequences"),
-      key::choice(
-          "model", options.model,
-          "what methods assume of the plant without a fault. `\"nominal\"`: it is exactly the model. "
-          "`\"benchmark\"`: it differs from the model as the benchmark shows, and methods look for "
-          "what is new since then. `\"automatic\"`: `\"benchmark\"` if the study has `[world]`, if the "
-          "plant is a program or an FMU, or if the plant is nonlinear, or the record has averages or "
-          "shifts, and the benchmark rejects an exact model; otherwise `\"nominal\"`. `validate` and `run` "
-          "say which it is"),
+      key::choice("setpoints", options.setpoints, {"controller", "optimizer"},
+                  "setpoint of a CV that is held in a range. `\"controller\"`: none, so methods that need "
+                  "setpoints do not apply. `\"optimizer\"`: the steady state that the target optimizer "
+                  "computes (2.32), which chapter 2 of the thesis uses to show the consequences"),
+      key::choice("model", options.model,
+                  "assumption of the methods about the plant without a fault. `\"nominal\"`: it is exactly "
+                  "the model. `\"benchmark\"`: it differs from the model as the benchmark shows, and methods "
+                  "look for changes since then. `\"automatic\"`: `\"benchmark\"` if the study has `[world]`, "
+                  "if the plant is a program or an FMU, or if the benchmark rejects an exact model and "
+                  "either the plant is nonlinear or the record has averages or shifts; otherwise "
+                  "`\"nominal\"`. `validate` and `run` say which of the two applies"),
       key::number("model_error", options.model_error, NumberRule::positive(),
-                  "prior standard deviation of the gain and time constant of each channel, relative; of its "
-                  "dead time, as a fraction of the dead time or of a sample"),
+                  "prior standard deviation of the relative error of the gain and the time constant of each "
+                  "channel, and of the error of its dead time as a fraction of the dead time or of a sample"),
       key::number(
           "bias", options.bias, NumberRule::at_least(0),
           "prior standard deviation of a constant error of each CV, in standard deviations of its noise"),
-      key::option(
-          "washout", "number",
-          "of a CV that integrates: time constant of the high-pass filter through which methods see it "
-          "and its model, since a simulation of a level drifts without end",
-          "time")
+      key::option("washout", "number",
+                  "time constant of the high-pass filter through which methods see a CV that integrates and "
+                  "its model, since a simulation of a level drifts without end",
+                  "time")
           .otherwise("the prediction horizon")
           .allow("> 0")
           .read([&options](const TomlTable& table, const std::string& key) {
@@ -57,11 +54,11 @@ OptionKeys assessment_keys(AssessmentOptions& options) {
 }
 
 OptionKeys methods_keys(std::vector<std::string>& names) {
-  return {key::texts(
-              "names", names, "names of methods of assessment, or \"all\" alone",
-              "methods of assessment that see every loop of the study (`mpmbench compare --help` lists "
-              "them), or `[\"all\"]`. `botelho` is the chain of the thesis. `run --methods A,B` takes others")
-              .allow("names of methods, each once")};
+  return {
+      key::texts("names", names, "names of methods of assessment, or \"all\" alone",
+                 "methods that assess every loop of the study (`mpmbench compare --help` lists them), or "
+                 "`[\"all\"]`. `botelho` is the chain of the thesis. `run --methods A,B` overrides the list")
+          .allow("names of methods, each once")};
 }
 
 /// A table that turns on what only a study of random experiments has.
@@ -93,7 +90,7 @@ OptionKeys monitoring_keys(MonitoringOptions& options, const Study& study) {
       key::whole(
           "window", options.window, std::min(kShortestMonitoringWindow, samples), samples,
           "number of samples that a verdict covers. Methods that filter or simulate the loop start at the "
-          "beginning of the record and judge these samples. A longer window sees smaller faults, but later")
+          "beginning of the record and judge these samples. A longer window finds smaller faults, but later")
           .otherwise("200, or the whole record where it is shorter")
           .allow("24 to `simulation.samples`"),
       key::whole("stride", options.stride, 1, samples, "number of samples from one verdict to the next")
@@ -108,29 +105,28 @@ OptionKeys calibration_keys(CalibrationOptions& options, const Study& study) {
     if (*options.seed == study.seed)
       table.refuse(key, fmt::format("{}, the seed of the study", *options.seed), "another one");
   };
-  return {
-      key::number("false_alarms", options.false_alarms, NumberRule::inside(0, 1),
-                  "largest share of healthy loops that the threshold of the rate "
-                  "`false_alarm_calibrated` may flag; the other thresholds are at 1 % and 5 %"),
-      key::whole("healthy", options.healthy, 1, kMaxCalibrationLoops,
-                 "number of loops without a fault. A threshold at 1 % needs 99, one at 5 % needs 19; "
-                 "with 200 the rate at 5 % lies within 2.4 and 8.4 %"),
-      key::whole("ud", options.ud, 0, kMaxCalibrationLoops,
-                 "number of loops with an unmeasured disturbance alone, for the thresholds of a monitor "
-                 "of the model, which should not flag them"),
-      key::option("worlds", "whole number",
-                  "in how many worlds these loops take place, each with a benchmark of its own. Scores of "
-                  "loops of one world are alike, so that many worlds with few loops each make a better "
-                  "threshold than few worlds with many")
-          .otherwise("`world.count`")
-          .allow("1 to 1000000; in a study with `[world]`")
-          .read([&options](const TomlTable& table, const std::string& key) {
-            options.worlds = static_cast<int>(read_whole(table, key, 1, kMaxCalibrationLoops));
-          }),
-      key::option("seed", "whole number", "seed of these loops")
-          .otherwise("that of the study with the bits of 0x63616c6962726174 (\"calibrat\") flipped")
-          .allow("not that of the study, nor of `run --seed`")
-          .read(read_seed)};
+  return {key::number("false_alarms", options.false_alarms, NumberRule::inside(0, 1),
+                      "largest share of healthy loops that the threshold of the rate "
+                      "`false_alarm_calibrated` may flag; the other thresholds are at 1 % and 5 %"),
+          key::whole("healthy", options.healthy, 1, kMaxCalibrationLoops,
+                     "number of loops without a fault. A threshold at 1 % needs 99, one at 5 % needs 19; "
+                     "with 200 the rate at 5 % lies within 2.4 and 8.4 %"),
+          key::whole("ud", options.ud, 0, kMaxCalibrationLoops,
+                     "number of loops with an unmeasured disturbance alone, for the thresholds of a monitor "
+                     "of the model, which should not flag them"),
+          key::option("worlds", "whole number",
+                      "number of worlds in which these loops take place, each with a benchmark of its own. "
+                      "Scores of loops of one world are alike, so many worlds with few loops each give a "
+                      "better threshold than few worlds with many loops")
+              .otherwise("`world.count`")
+              .allow("1 to 1000000; in a study with `[world]`")
+              .read([&options](const TomlTable& table, const std::string& key) {
+                options.worlds = static_cast<int>(read_whole(table, key, 1, kMaxCalibrationLoops));
+              }),
+          key::option("seed", "whole number", "seed of these loops")
+              .otherwise("the seed of the study with the bits of 0x63616c6962726174 (\"calibrat\") flipped")
+              .allow("neither the seed of the study nor that of `run --seed`")
+              .read(read_seed)};
 }
 
 }  // namespace

@@ -333,7 +333,7 @@ OptionKeys simulation_keys(Study& study) {
           "signals. `\"each\"`: every loop has its own. Random steps and variations are drawn anew; listed "
           "steps come at other times and in another order, and those of MDs and setpoints have half to all "
           "of the listed size. `\"none\"`: only noise and faults move the loop")
-          .otherwise("`" shared "` with any excitation")
+          .otherwise("`\"shared\"` with any excitation")
           .allow("`\"none\"` without anything that excites; `\"shared\"`, `\"each\"`"),
       key::list<SignalStep>(
           "step", kMaxSteps, [&options](SignalStep& step) { return step_keys(step, options.samples); },

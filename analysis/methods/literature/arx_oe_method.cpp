@@ -58,11 +58,11 @@ OptionKeys keys(ArxOeOptions& options) {
         });
   };
   return {
-      key::option("form", "text",
-                  "what is compared with the benchmark: `\"windows\"` of the record, by machines that have "
-                  "learnt those of the benchmark, as in the paper; the whole record, by "
-                  "`\"covariances\"`; `\"automatic\"`: windows where record and benchmark are four "
-                  "windows long")
+      key::option(
+          "form", "text",
+          "comparison with the benchmark. `\"windows\"`: windows of the record, by support vector machines "
+          "trained on windows of the benchmark, as in the paper. `\"covariances\"`: the whole record, by "
+          "covariances. `\"automatic\"`: windows if record and benchmark are at least four windows long")
           .allow("`\"automatic\"`, `\"windows\"`, `\"covariances\"`")
           .otherwise("`\"automatic\"`")
           .read([&options](const TomlTable& table, const std::string& key) {
@@ -71,10 +71,10 @@ OptionKeys keys(ArxOeOptions& options) {
           }),
       whole("window", options.window, "length of a window")
           .otherwise("16 for each coefficient of its models"),
-      whole("step", options.step, "from the start of a window to that of the next one")
+      whole("step", options.step, "distance between the starts of two windows")
           .otherwise("a quarter of a window"),
       share("nu", options.nu,
-            "share of the training samples that a machine may leave outside of its boundary"),
+            "share of the training samples that may lie outside of the boundary of a support vector machine"),
       share("share", options.share,
             "a CV is flagged when more than this share of the windows of the record lie outside")};
 }
@@ -232,7 +232,7 @@ AssessmentMethodInfo arx_oe_method() {
              "whose noise model has it"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<ArxOe>(context); },
-      option_table<ArxOeOptions>(keys, "of the windows of the ARX-OE method")};
+      option_table<ArxOeOptions>(keys, "options of the windows of the ARX-OE method")};
 }
 
 }  // namespace mpm

@@ -35,14 +35,13 @@ struct AutocovarianceOptions {
 };
 
 OptionKeys keys(AutocovarianceOptions& options) {
-  return {
-      key::number("alpha", options.alpha, NumberRule::inside(0, 1), "of the tests, over all CVs"),
-      key::whole("largest_lag", options.largest_lag, 0, 1000,
-                 "samples; the lags are 0, 1, 2, 4, ... up to it. Neighbours say nearly the same, and "
-                 "their covariance has hardly an inverse"),
-      key::choice("unexplained", options.unexplained, {"disturbance", "mismatch"},
-                  "source of a flagged loop that no mismatch of one number explains. `\"mismatch\"` is the "
-                  "paper's, in which nothing else can be wrong")};
+  return {key::number("alpha", options.alpha, NumberRule::inside(0, 1), "level of the tests, over all CVs"),
+          key::whole("largest_lag", options.largest_lag, 0, 1000,
+                     "largest lag in samples; the lags are 0, 1, 2, 4, ... up to it. Neighbouring lags carry "
+                     "nearly the same information, so their covariance is nearly singular"),
+          key::choice("unexplained", options.unexplained, {"disturbance", "mismatch"},
+                      "source of a flagged loop that no mismatch of a single parameter explains. "
+                      "`\"mismatch\"` is the choice of the paper, in which nothing else can be wrong")};
 }
 
 /// Families of mismatches that are looked at a second time, and how far around, in steps of the grid.
@@ -361,7 +360,7 @@ AssessmentMethodInfo autocovariance_method() {
                         "that of all CVs from the best mismatch, over the one that chance exceeds"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<Autocovariance>(context); },
-          option_table<AutocovarianceOptions>(keys, "of the autocovariances of a linear loop")};
+          option_table<AutocovarianceOptions>(keys, "options of the autocovariances of a linear loop")};
 }
 
 }  // namespace mpm

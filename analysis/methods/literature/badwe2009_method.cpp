@@ -15,46 +15,47 @@ namespace {
 
 OptionKeys keys(Badwe2009Options& options) {
   return {
-      key::choice(
-          "filter", options.filter, {"automatic", "none", "moving-average", "first-order", "external"},
-          "how noise is taken out first (A1.2). `\"external\"`: of the MVs only what setpoints and measured "
-          "disturbances make them do. `\"automatic\"`: that where at least as many of these move as MVs are "
-          "evaluated, since fewer cannot tell the MVs apart, and `\"none\"` otherwise"),
+      key::choice("filter", options.filter,
+                  {"automatic", "none", "moving-average", "first-order", "external"},
+                  "filter that removes noise first (A1.2). `\"external\"`: only the part of the MVs that "
+                  "setpoints and measured disturbances cause. `\"automatic\"`: `\"external\"` if at least as "
+                  "many setpoints and measured disturbances move as MVs are evaluated, since fewer cannot "
+                  "tell the MVs apart; otherwise `\"none\"`"),
       key::whole("filter_length", options.filter_length, 1, 1000,
                  "samples of the moving average; time constant of the first-order filter in samples"),
-      key::choice(
-          "model", options.models.model, {"output-error", "fir"},
-          "models of (2.5) and (2.6): a regression, which has one answer and costs a hundredth, or the "
-          "output-error search of the thesis"),
+      key::choice("model", options.models.model, {"output-error", "fir"},
+                  "models of (2.5) and (2.6). `\"fir\"`: a regression, which has one solution and takes a "
+                  "hundredth of the time. `\"output-error\"`: the search of the thesis"),
       key::whole("nb", options.models.nb, 1, 1000, "order of B of each path of an output-error model"),
       key::whole("nf", options.models.nf, 0, 1000, "order of F of each path"),
       key::whole("fir_length", options.models.fir_length, 1, 1000,
-                 "Laguerre filters an input, one of them direct"),
+                 "number of Laguerre filters for each input, one of them direct"),
       key::number("fir_pole", options.models.fir_pole, NumberRule::below_one(),
-                  "their pole, about exp(-sample time/time constant) of the slow channels; 0 is a finite "
-                  "impulse response"),
+                  "pole of the Laguerre filters, about exp(-sample time/time constant) of the slow channels; "
+                  "0 is a finite impulse response"),
       key::whole("min_lag", options.min_lag, 0, 1000,
-                 "first lag looked at. u(k) acts after y(k), so lag 0 has only the controller's answer to "
-                 "the noise of y(k)"),
-      key::whole_from(
-          "max_lag", options.max_lag, options.min_lag, 1000,
-          "last lag: dead time and time constant of the slow channels. A record has at least four "
-          "times as many samples")
+                 "first lag of the correlations. u(k) acts after y(k), so lag 0 has only the response of the "
+                 "controller to the noise of y(k)"),
+      key::whole_from("max_lag", options.max_lag, options.min_lag, 1000,
+                      "last lag, about the dead time plus the time constant of the slow channels. A record "
+                      "must have at least four times as many samples")
           .allow("`min_lag` to 1000"),
       key::number("confidence", options.confidence, NumberRule::inside(0, 1),
                   "confidence of the band of the partial correlation"),
-      key::choice(
-          "multiplicity", options.multiplicity, {"none", "lags", "channels"},
-          "among how many correlations 1 - `confidence` is shared out: one, the lags of a channel, or those "
-          "of all channels, so that it is the rate of false alarms of a loop"),
-      key::number("weakest_correlation", options.weakest_correlation, NumberRule::share(),
-                  "correlations up to it are not strong, however significant; the thesis gives no number"),
+      key::choice("multiplicity", options.multiplicity, {"none", "lags", "channels"},
+                  "number of correlations among which 1 - `confidence` is divided: one, the lags of a "
+                  "channel, or the lags of all channels. With `\"channels\"`, 1 - `confidence` is the rate "
+                  "of false alarms of a loop"),
+      key::number(
+          "weakest_correlation", options.weakest_correlation, NumberRule::share(),
+          "largest correlation that is not strong, however significant it is; the thesis gives no number"),
       key::number("saturated_share", options.saturated_share, NumberRule::share(),
-                  "an MV at a hard limit for more of the record is left out (\"most of the time\", 2.4.2)"),
+                  "an MV that is at a hard limit for more than this share of the record is left out (\"most "
+                  "of the time\", 2.4.2)"),
       key::number("smallest_deviation", options.smallest_deviation, NumberRule::at_least(0),
                   "an MV with a smaller standard deviation is left out"),
       key::number("smallest_own_share", options.smallest_own_share, NumberRule::share(),
-                  "an MV of whose variance (2.5) leaves less is left out")};
+                  "an MV is left out if (2.5) leaves less than this share of its variance")};
 }
 
 class Badwe2009 final : public AssessmentMethod {
@@ -155,7 +156,7 @@ AssessmentMethodInfo badwe2009_method() {
                        {"strength", NumberScope::channel, "its size over its confidence band"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<Badwe2009>(context); },
-          option_table<Badwe2009Options>(keys, "of the method of Badwe et al. (2009)"),
+          option_table<Badwe2009Options>(keys, "options of the method of Badwe et al. (2009)"),
           stated_false_alarms};
 }
 

@@ -25,21 +25,20 @@ struct Badwe2010Options {
 };
 
 OptionKeys keys(Badwe2010Options& options) {
-  return {
-      key::whole("smallest_order", options.smallest_order, 1, 100,
-                 "smallest order of the output-error models that is tried (3.3.2)"),
-      key::whole_from("largest_order", options.largest_order, options.smallest_order, 100,
-                      "largest order n (3.3.2). A record of no more samples than the 2n + 1 coefficients of "
-                      "each CV with a setpoint is not assessed")
-          .allow("`smallest_order` to 100"),
-      key::choice(
-          "criterion", options.criterion, {"record-fit", "validation-fit", "bic"},
-          "how the order is chosen: the largest %Fit (3.32) over the record, which is the \"best model "
-          "fit\" that the thesis reports; the largest over the last 30 % by models of the first 70 %; "
-          "the smallest BIC"),
-      key::whole("max_iterations", options.max_iterations, 1, 100'000,
-                 "iterations of the search for each model; 20 is the default of `oe` in Matlab, with "
-                 "which the thesis worked")};
+  return {key::whole("smallest_order", options.smallest_order, 1, 100,
+                     "smallest order of the output-error models that is tried (3.3.2)"),
+          key::whole_from("largest_order", options.largest_order, options.smallest_order, 100,
+                          "largest order n (3.3.2). A record is assessed only if it has more samples than "
+                          "the 2n + 1 coefficients of each CV with a setpoint")
+              .allow("`smallest_order` to 100"),
+          key::choice(
+              "criterion", options.criterion, {"record-fit", "validation-fit", "bic"},
+              "how the order is chosen: the largest %Fit (3.32) over the record, which is the \"best model "
+              "fit\" that the thesis reports; the largest over the last 30 % by models of the first 70 %; "
+              "the smallest BIC"),
+          key::whole("max_iterations", options.max_iterations, 1, 100'000,
+                     "iterations of the search for each model; 20 is the default of `oe` in Matlab, with "
+                     "which the thesis worked")};
 }
 
 DesignedOutputOptions options_of(const Badwe2010Options& study) {
@@ -157,7 +156,7 @@ AssessmentMethodInfo badwe2010_method() {
                    {"oscillates", NumberScope::cv, "1 when y - y_set oscillates and y0 - y_set does not"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<Badwe2010>(context); },
-      option_table<Badwe2010Options>(keys, "of the method of Badwe et al. (2010)")};
+      option_table<Badwe2010Options>(keys, "options of the method of Badwe et al. (2010)")};
 }
 
 }  // namespace mpm

@@ -13,7 +13,7 @@ namespace mpm {
 /// How records are cut into windows, and when a window is outside.
 struct WindowRule {
   Eigen::Index window = 0;  ///< samples
-  Eigen::Index step = 0;    ///< samples from the start of a window to that of the next one
+  Eigen::Index step = 0;    ///< samples distance between the starts of two windows
   double nu = 0.01;         ///< share of what a machine learns from that it leaves outside
   double share = 0.5;       ///< share of the windows of a record that must lie outside
 

@@ -37,11 +37,11 @@ struct LassoOptions {
 };
 
 OptionKeys keys(LassoOptions& options) {
-  return {key::choice(
-      "penalty", options.penalty, {"chance", "cross-validation"},
-      "how large lambda is: a channel that explains nothing enters with a probability of 1 % shared out to "
-      "all channels, and those that stay beside the others are named; or as the paper has it, by "
-      "cross-validation over five stretches of the record, and all channels that enter are named")};
+  return {key::choice("penalty", options.penalty, {"chance", "cross-validation"},
+                      "rule for lambda. `\"chance\"`: 1 % is divided among all channels as the probability "
+                      "that a channel which explains nothing enters; the channels that stay significant "
+                      "beside the others are named. `\"cross-validation\"`, as in the paper: over five "
+                      "stretches of the record; all channels that enter are named")};
 }
 
 using Groups = std::vector<Eigen::MatrixXd>;
@@ -314,7 +314,7 @@ AssessmentMethodInfo lasso_method() {
                     "static gain of a selected channel over that of the model"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<Lasso>(context); },
-      option_table<LassoOptions>(keys, "of the method `lasso`")};
+      option_table<LassoOptions>(keys, "options of the method `lasso`")};
 }
 
 }  // namespace mpm

@@ -23,9 +23,9 @@ struct MqiChannelsOptions {
 };
 
 OptionKeys keys(MqiChannelsOptions& options) {
-  return {
-      key::number("tolerance", options.tolerance, NumberRule::positive(),
-                  "a channel is named when 1/rho lies below it; that of the index of Sun et al. (2.4.2)")};
+  return {key::number("tolerance", options.tolerance, NumberRule::positive(),
+                      "a channel is named when 1/rho lies below it. The default is the tolerance of the "
+                      "index of Sun et al. (2.4.2)")};
 }
 
 /// Model quality with one submodel left out (Li, Song, Zhang, Ye and Yang 2017), a reconstruction from the
@@ -105,7 +105,7 @@ AssessmentMethodInfo mqi_channels_method() {
                         "model quality index of the CV without this submodel over that with it"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<MqiChannels>(context); },
-          option_table<MqiChannelsOptions>(keys, "of the model quality without a submodel")};
+          option_table<MqiChannelsOptions>(keys, "options of the model quality without a submodel")};
 }
 
 }  // namespace mpm

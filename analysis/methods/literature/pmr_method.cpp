@@ -38,17 +38,17 @@ struct PmrOptions {
 };
 
 OptionKeys keys(PmrOptions& options) {
-  return {key::number("alpha", options.alpha, NumberRule::inside(0, 1),
-                      "share of loops without mismatch that are flagged at most, shared out to the CVs"),
-          key::choice(
-              "instruments", options.instruments, {"outside", "setpoints"},
-              "signals that no disturbance can know, from which what they make of the MVs is computed: MDs, "
-              "setpoints, moving limits and test signals, or the setpoints alone, as the papers have it. "
-              "`\"outside\"` because a controller in ranges has no setpoints"),
-          key::whole("filters", options.drive.fir_length, 1, 100,
-                     "Laguerre filters of each of these signals, one of them direct, in the regression of "
-                     "the MVs. More follow the MVs better, and follow a part of the noise in them"),
-          key::number("pole", options.drive.fir_pole, NumberRule::below_one(), "of these filters")};
+  return {
+      key::number("alpha", options.alpha, NumberRule::inside(0, 1),
+                  "largest share of loops without mismatch that are flagged, divided among the CVs"),
+      key::choice("instruments", options.instruments, {"outside", "setpoints"},
+                  "signals that are independent of the disturbances and explain the MVs. `\"outside\"`: MDs, "
+                  "setpoints, moving limits and test signals. `\"setpoints\"`: the setpoints alone, as in "
+                  "the papers. The default is `\"outside\"` because a controller in ranges has no setpoints"),
+      key::whole("filters", options.drive.fir_length, 1, 100,
+                 "number of Laguerre filters of each of these signals, one of them direct, in the regression "
+                 "of the MVs. More filters follow the MVs better, but also follow some of their noise"),
+      key::number("pole", options.drive.fir_pole, NumberRule::below_one(), "pole of these filters")};
 }
 
 /// The plant-model ratio (Selvanathan and Tangirala 2010; Kaw, Tangirala and Karimi 2014; Mittermaier, le
@@ -187,7 +187,7 @@ AssessmentMethodInfo pmr_method() {
                    {"delay", NumberScope::channel, "-arg P / w at its corner", "time unit of the plant"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<PlantModelRatio>(context); },
-      option_table<PmrOptions>(keys, "of the plant-model ratio"),
+      option_table<PmrOptions>(keys, "options of the plant-model ratio"),
       [](const MethodOptions& options) { return options.of<PmrOptions>().alpha; }};
 }
 

@@ -40,32 +40,33 @@ struct SunOptions {
 OptionKeys keys(SunOptions& options) {
   return {
       key::number("tolerance", options.tolerance, NumberRule::positive(),
-                  "MQI and iMQI below it show a poor model; the limit of section 2.4.2. Chapter 4 says 0.8"),
-      key::choice("index", options.index, {"imqi", "mqi"},
-                  "what of a CV is held against it: (4.3), with its root, as in chapter 4, or "
-                  "(2.4) of the CV alone, without the root, as in figures 2.15 and 2.16"),
-      key::wholes("orders", options.orders, 1, 100,
-                  "MO1 of (2.1). Of several one is chosen for each CV. Open; 20 is above the dead times of "
-                  "all shipped plants and takes 14 % of the degrees of freedom of 900 samples of three CVs"),
-      key::whole("setpoint_order", options.setpoint_order, 0, 100,
-                 "MO2 of (2.1); 0: as MO1, since nothing is known of the difference"),
+                  "an MQI or iMQI below it shows a poor model. Section 2.4.2 has 0.85, chapter 4 has 0.8"),
       key::choice(
-          "criterion", options.criterion, {"aic", "bic", "validation"},
-          "by what one of several orders is chosen; validation: mean squared prediction error on the last 30 "
-          "%. AIC, because the loop of an offset-free controller is no ARX model of finite order, and the "
-          "best predictor is wanted"),
+          "index", options.index, {"imqi", "mqi"},
+          "index of a CV that is compared with `tolerance`: `\"imqi\"` is (4.3) with its root, as in chapter "
+          "4; `\"mqi\"` is (2.4) of the CV alone, without the root, as in figures 2.15 and 2.16"),
+      key::wholes(
+          "orders", options.orders, 1, 100,
+          "MO1 of (2.1); if there are several, one is chosen for each CV. Open; 20 is above the dead times "
+          "of all shipped plants and takes 14 % of the degrees of freedom of 900 samples of three CVs"),
+      key::whole("setpoint_order", options.setpoint_order, 0, 100,
+                 "MO2 of (2.1); 0: the same as MO1, since no source gives a difference"),
+      key::choice("criterion", options.criterion, {"aic", "bic", "validation"},
+                  "criterion that chooses among several orders; `\"validation\"` is the mean squared "
+                  "prediction error on the last 30 %. The default is AIC because the best predictor is "
+                  "wanted and the loop of an offset-free controller is no ARX model of finite order"),
       key::flag("own_outputs", options.own_outputs,
-                "the past of the CV alone, in place of that of all CVs. (2.1) has full matrices; for short "
-                "records of many CVs"),
+                "use the past of the CV alone instead of the past of all CVs, for short records of many CVs. "
+                "(2.1) has full matrices"),
       key::flag("measured_disturbances", options.measured_disturbances,
-                "they stand beside the setpoints in (2.1), which has setpoints only"),
-      key::flag(
-          "correct_for_parameters", options.correct_for_parameters,
-          "sums of squares of e^d over n - p in place of n, p the coefficients fitted. (2.4) has plain sums"),
+                "use measured disturbances beside the setpoints in (2.1), which has setpoints only"),
+      key::flag("correct_for_parameters", options.correct_for_parameters,
+                "divide sums of squares of e^d by n - p instead of n, with p fitted coefficients. (2.4) has "
+                "plain sums"),
       key::choice("noise", options.noise, {"integrated", "benchmark", "white"},
                   "G_d0 of (2.2): the designed filter (1 - c q^-1)/(1 - q^-1), an autoregression "
-                  "identified in the benchmark, or 1. Integrated: a controller that holds its "
-                  "output error constant assumes it, with c = 0"),
+                  "identified in the benchmark, or 1. `\"integrated\"` with c = 0 is what a controller "
+                  "assumes that holds its output error constant"),
       key::number("noise_filter", options.noise_filter, NumberRule::below_one(),
                   "c. White errors of a perfect model have MQI (1 + c)/2 under this filter: 0.7 is the c "
                   "nearest to the controller's own at which the tolerance 0.85 does not flag them"),
@@ -210,7 +211,7 @@ AssessmentMethodInfo sun_method() {
                    {"order", NumberScope::cv, "MO1 of its high-order ARX model (2.1)"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<Sun>(context); },
-      option_table<SunOptions>(keys, "of the method of Sun et al.")};
+      option_table<SunOptions>(keys, "options of the method of Sun et al.")};
 }
 
 }  // namespace mpm

@@ -130,7 +130,7 @@ AssessmentMethodInfo yu_qin_method() {
       [](const AssessmentContext& context) {
         return std::make_unique<YuQin>(context.study.assessment.of<YuQinOptions>(), context);
       },
-      option_table<YuQinOptions>(keys, "of the method of Yu and Qin"),
+      option_table<YuQinOptions>(keys, "options of the method of Yu and Qin"),
       // A loop is flagged by the lower one of the two ends of an interval.
       [](const MethodOptions& options) {
         return 0.5 * (1.0 - options.of<YuQinOptions>().comparison.confidence);

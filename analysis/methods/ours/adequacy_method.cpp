@@ -14,17 +14,18 @@ namespace {
 OptionKeys keys(AdequacyOptions& options) {
   return {
       key::number("worth", options.worth, NumberRule::positive(),
-                  "gain of a repair below which the model is adequate: the part of what the loop costs that "
-                  "the repair of one channel takes away"),
+                  "the model is adequate if no repair gains more than this: the share of the cost of the "
+                  "loop that the repair of one channel saves"),
       key::number("probability", options.probability, NumberRule::inside(0, 1),
-                  "a loop, and a CV, is flagged when the repair of a channel is worth more than `worth` with "
-                  "this probability"),
+                  "a loop or a CV is flagged when, with at least this probability, the repair of a channel "
+                  "gains more than `worth`"),
       key::number("deviation", options.deviation, NumberRule::positive(),
                   "standard deviation of the relative errors of gain, time constant and dead time of each "
                   "channel before the record is seen"),
-      key::whole("draws", options.draws, 1, 1000, "plants out of the posterior on which loops are simulated"),
+      key::whole("draws", options.draws, 1, 1000,
+                 "number of plants drawn from the posterior, on which loops are simulated"),
       key::whole("channels", options.channels, 1, 1000,
-                 "channels whose repair is simulated: those whose error explains most of a CV")};
+                 "number of channels whose repair is simulated: those whose error explains most of a CV")};
 }
 
 /// Is the model still in the set of models with which this controller performs adequately (Mesbah, Bombois,
@@ -104,7 +105,7 @@ AssessmentMethodInfo adequacy_method() {
                 {"p_worth", NumberScope::channel, "probability that it is above `worth`"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<Adequacy>(context); },
-          option_table<AdequacyOptions>(keys, "of the test whether the model is adequate")};
+          option_table<AdequacyOptions>(keys, "options of the test whether the model is adequate")};
 }
 
 }  // namespace mpm

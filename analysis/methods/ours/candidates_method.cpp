@@ -105,7 +105,7 @@ AssessmentMethodInfo candidates_method() {
           {},
           [](const AssessmentContext& context) { return std::make_unique<Candidates>(context); },
           option_table<CandidatesOptions>(
-              keys, "of the test of the simulation errors against further logged signals"),
+              keys, "options of the test of the simulation errors against further logged signals"),
           [](const MethodOptions& options) { return options.of<CandidatesOptions>().regression.alpha; }};
 }
 

@@ -8,10 +8,10 @@ namespace mpm {
 namespace {
 
 OptionKeys keys(CounterfactualOptions& options) {
-  return {key::choice(
-      "noise", options.noise, {"difference", "positive", "none"},
-      "v of Ivar = var y / (var y0 + v), what noise adds to the variance: var y - var y0 of the benchmark, "
-      "of either sign, since noise also keeps CVs off their limits; the same and not below 0; or 0")};
+  return {key::choice("noise", options.noise, {"difference", "positive", "none"},
+                      "v of Ivar = var y / (var y0 + v), the variance that noise adds. `\"difference\"`: var "
+                      "y - var y0 of the benchmark, of either sign, since noise also keeps CVs off their "
+                      "limits. `\"positive\"`: the same, but at least 0. `\"none\"`: 0")};
 }
 
 /// The impact by CounterfactualLoop; of a flagged loop, that of each CV.
@@ -57,7 +57,7 @@ AssessmentMethodInfo counterfactual_method() {
                    {"ivar_diag", NumberScope::cv, "var y / (var y0_diag + v), of flagged loops"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<Counterfactual>(context); },
-      option_table<CounterfactualOptions>(keys, "of the simulated nominal loop")};
+      option_table<CounterfactualOptions>(keys, "options of the simulated nominal loop")};
 }
 
 }  // namespace mpm

@@ -30,13 +30,13 @@ struct ExcitationOptions {
 
 OptionKeys keys(ExcitationOptions& options) {
   OptionKeys all = keys(options.regression);
-  all.push_back(key::choice(
-      "measure", options.measure, {"f", "mutual-information"},
-      "what shows that the error follows a signal: the F test of a linear regression, or the mutual "
-      "information, which sees what is not linear, too, and needs more of it"));
   all.push_back(
-      key::whole("bins", options.bins, 2, 100,
-                 "of each signal, of the mutual information. A record has 5 samples for each pair of them"));
+      key::choice("measure", options.measure, {"f", "mutual-information"},
+                  "test that the error follows a signal. `\"f\"`: the F test of a linear regression. "
+                  "`\"mutual-information\"`: it also sees nonlinear relations, but they must be stronger"));
+  all.push_back(key::whole("bins", options.bins, 2, 100,
+                           "number of bins of each signal for the mutual information. A record needs 5 "
+                           "samples for each pair of bins"));
   return all;
 }
 
@@ -143,7 +143,7 @@ AssessmentMethodInfo excitation_method() {
           {},
           [](const AssessmentContext& context) { return std::make_unique<Excitation>(context); },
           option_table<ExcitationOptions>(
-              keys, "of the test of the simulation errors against signals from outside"),
+              keys, "options of the test of the simulation errors against signals from outside"),
           [](const MethodOptions& options) { return options.of<ExcitationOptions>().regression.alpha; }};
 }
 

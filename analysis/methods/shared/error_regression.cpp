@@ -17,16 +17,14 @@ constexpr double kErrorResolution = 1e-10;
 }  // namespace
 
 OptionKeys keys(ErrorRegressionOptions& options) {
-  return {
-      key::number("alpha", options.alpha, NumberRule::inside(0, 1),
-                  "a loop in which nothing is to be found is flagged with this probability at most, over all "
-                  "its CVs"),
-      key::whole("filters", options.filters, 1, 100, "Laguerre filters of each signal"),
-      key::number(
-          "pole", options.pole, NumberRule::below_one(),
-          "their pole: what they remember falls by it from sample to sample. 0 is a finite impulse response"),
-      key::whole("largest_order", options.largest_order, 0, 100,
-                 "of the autoregression of a simulation error; BIC chooses")};
+  return {key::number("alpha", options.alpha, NumberRule::inside(0, 1),
+                      "largest probability that a loop without a fault is flagged, over all its CVs"),
+          key::whole("filters", options.filters, 1, 100, "number of Laguerre filters of each signal"),
+          key::number("pole", options.pole, NumberRule::below_one(),
+                      "pole of the Laguerre filters: their memory decays by this factor from sample to "
+                      "sample. 0 is a finite impulse response"),
+          key::whole("largest_order", options.largest_order, 0, 100,
+                     "largest order of the autoregression of a simulation error; BIC chooses")};
 }
 
 Eigen::MatrixXd model_errors(const AssessedLoop& loop) {

@@ -21,9 +21,9 @@ struct SseOptions {
 OptionKeys keys(SseOptions& options) {
   return {key::number(
       "threshold", options.threshold, NumberRule::positive(),
-      "a CV is flagged when its mean squared simulation error is above so many times that of the benchmark. "
-      "The thesis has no limit; the mean squares of white noise over 400 samples scatter by 0.1 around 1, so "
-      "that 1.5 is seldom met by chance and errors of 0.7 standard deviations of the noise are seen")};
+      "a CV is flagged when its mean squared simulation error is above this multiple of the one in the "
+      "benchmark. The thesis has no threshold. The ratio of white noise over 400 samples scatters by 0.1 "
+      "around 1, so chance seldom exceeds 1.5, and errors of 0.7 standard deviations of the noise are seen")};
 }
 
 /// The measured CVs without an error where a sample is missing.
@@ -101,7 +101,7 @@ AssessmentMethodInfo sse_method() {
                         "mean square of y - y_sim over that of the benchmark; 1 for the same errors"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<SimulationErrorMonitor>(context); },
-          option_table<SseOptions>(keys, "of the monitor of the simulation errors")};
+          option_table<SseOptions>(keys, "options of the monitor of the simulation errors")};
 }
 
 }  // namespace mpm

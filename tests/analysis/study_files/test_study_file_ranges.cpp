@@ -175,7 +175,7 @@ TEST_CASE("the options of the perturbation of S0 are checked", "[study_file]") {
       {"", "[s0_perturbation]\ncvs = ['level']\n", "[s0_perturbation]",
        "s0_perturbation.multipliers: found nothing; allowed: a list of 1 to 1000, each a number > 0"},
       {"", "[s0_perturbation]\nmultipliers = [0.5, 2, 1]\n", "multipliers",
-       "s0_perturbation.multipliers: found 1 after 2; allowed: numbers that grow"},
+       "s0_perturbation.multipliers: found 1 after 2; allowed: numbers in ascending order"},
       {"", "[s0_perturbation]\nmultipliers = [1]\ncvs = ['cold']\n", "cvs",
        "s0_perturbation.cvs: found 'cold'; allowed: level, heat"},
       {"", "[s0_perturbation]\nmultipliers = [1]\ntolerance = [1.2, 0.8]\n", "tolerance",
