@@ -51,7 +51,7 @@ struct LoopTruth {
   };
 
   Eigen::MatrixXd v;    ///< measurement noise, ny x N
-  Eigen::MatrixXd y_d;  ///< what unmeasured disturbances and errors of sensors add to the CVs, ny x N
+  Eigen::MatrixXd y_d;  ///< sum of the unmeasured disturbances and errors of sensors on the CVs, ny x N
   Alone mpm_alone = {}, ud_alone = {};
 };
 

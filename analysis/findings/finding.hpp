@@ -46,7 +46,7 @@ enum class Prominence : std::int8_t {
 struct Finding {
   std::string name;     ///< by which studies, gates and people refer to it: "mpm.located"
   std::string label;    ///< for tables under the heading of its group, with the marks of plot labels
-  std::string meaning;  ///< which experiments are looked at, and what of them is counted
+  std::string meaning;  ///< which experiments the number covers, and what it counts
   FindingForm form = FindingForm::number;
   FindingGroup group = FindingGroup::study;
   Prominence prominence = Prominence::table;

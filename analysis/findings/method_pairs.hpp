@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// Two methods on the same loops: is one right where the other is wrong? Counted are the loops that both gave
-/// a verdict on. In worlds the test is clustered_mcnemar(), worlds being the clusters.
+/// Two methods on the same loops: is one right where the other is wrong? Counted are the loops on which both
+/// gave a verdict. In worlds the test is clustered_mcnemar(), worlds being the clusters.
 struct MethodPair {
   FlagTruth truth;
   std::size_t first, second;  ///< places in the assessments of each record

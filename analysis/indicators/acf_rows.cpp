@@ -38,17 +38,17 @@ std::vector<Row<AcfComparison>> acf_rows() {
   };
   add("white_band", "half width of the band of white noise", &A::white_band);
   add("decay_lag_ratio", "decay lag of y over that of y0", &A::decay_lag_ratio);
-  add("decay_margin", "ratio up to which decay lags are alike", &A::decay_margin);
+  add("decay_margin", "largest ratio at which decay lags count as alike", &A::decay_margin);
   add("y_from_y0", "distance of ACF(y) from ACF(y0)", &A::y_from_y0);
   add("y_from_y0_diag", "distance of ACF(y) from ACF(y0_diag)", &A::y_from_y0_diag);
   add("y0_diag_from_y0", "distance of ACF(y0_diag) from ACF(y0)", &A::y0_diag_from_y0);
   add("own_share", "1 when y0_diag is like y0, 0 when it is like y", &A::own_share);
   rows.push_back(member_row<std::int8_t>(
       {"loop_speed", "speed of y against that of y0", "1", "", enum_words<LoopSpeed>()}, &A::speed));
-  rows.push_back(
-      member_row<std::int8_t>({"error_origin", "whose model the error that shows in the ACF comes from", "1",
-                               "", enum_words<ErrorOrigin>()},
-                              &A::origin));
+  rows.push_back(member_row<std::int8_t>(
+      {"error_origin", "origin of the error in the ACF: the model of this CV, or of others", "1", "",
+       enum_words<ErrorOrigin>()},
+      &A::origin));
   return rows;
 }
 

@@ -18,10 +18,9 @@ constexpr const char* kToldSource = "told_source";
 /// A number of each method that names mismatches, and none that follows from that: archives that were written
 /// before there was one have none.
 AssessmentNumberInfo mismatch_bound_info() {
-  return {
-      {kMismatchBound, "the size lies at an end of the range that was searched, and is no more than a bound",
-       "1", "", numbered({"none", "at_most", "at_least"})},
-      NumberScope::channel};
+  return {{kMismatchBound, "the size lies at an end of the searched range, so it is only a bound", "1", "",
+           numbered({"none", "at_most", "at_least"})},
+          NumberScope::channel};
 }
 
 /// None in an answer that has no such number.
@@ -44,7 +43,7 @@ std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& metho
                          "how far the CV is from being flagged, larger is worse");
   }
   if (method.tells_sources)
-    worded("cv_source", NumberScope::cv, "source that the method sees in a flagged CV or the worst one",
+    worded("cv_source", NumberScope::cv, "source that the method names for a flagged CV or the worst one",
            enum_words<FaultSource>());
   if (method.names_channels)
     worded("channel_flagged", NumberScope::channel, "the method names this channel of the model", no_yes());
@@ -52,13 +51,14 @@ std::vector<AssessmentNumberInfo> implied_numbers(const MethodDescription& metho
     worded("mismatch_parameter", NumberScope::channel,
            "parameter of this channel that the method says is wrong", enum_words<MismatchParameter>());
     numbers.emplace_back("mismatch_size", NumberScope::channel,
-                         "its size, as `mismatch_value` of an experiment is one");
+                         "size of this mismatch, in the form of `parameter_value` of an experiment");
     numbers.emplace_back("mismatch_lower", NumberScope::channel, "lower end of the interval of the size");
     numbers.emplace_back("mismatch_upper", NumberScope::channel, "upper end of the interval of the size");
   }
   if (method.names_candidates)
-    numbers.emplace_back("named_candidate", NumberScope::loop,
-                         "position of the logged signal that the method says drives the disturbance");
+    numbers.emplace_back(
+        "named_candidate", NumberScope::loop,
+        "position of the logged signal that drives the disturbance, according to the method");
   return numbers;
 }
 
@@ -118,7 +118,7 @@ AssessmentForms assessment_forms(const Study& study, const std::vector<std::stri
 }
 
 AssessmentNumberInfo told_source_info() {
-  return {{kToldSource, "source of the predicted CV, of another fault what it is about", "1", "",
+  return {{kToldSource, "source of the predicted CV; for another fault, its place", "1", "",
            enum_words<ToldSource>()},
           NumberScope::loop};
 }

@@ -10,7 +10,7 @@ namespace mpm {
 
 const std::vector<AssessmentNumberInfo>& source_probability_numbers() {
   static const std::vector<AssessmentNumberInfo> numbers{
-      {"p_healthy", NumberScope::loop, "stated probability that nothing is wrong"},
+      {"p_healthy", NumberScope::loop, "stated probability of no fault"},
       {"p_mpm", NumberScope::loop, "stated probability of a mismatch alone"},
       {"p_ud", NumberScope::loop, "stated probability of an unmeasured disturbance alone"},
       {"p_both", NumberScope::loop, "stated probability of both"},

@@ -27,7 +27,7 @@ std::vector<Row<OperatingPoint>> point_rows(const Study& study) {
           vector_row<P>({"y_operating", "CVs at the operating point", common_unit(study.plant.cvs)}, "cv", ny,
                         &P::y),
           of_file({"active_limit",
-                   "soft limit or setpoint that the CV is held at",
+                   "soft limit or setpoint at which the CV is held",
                    "1",
                    "",
                    {{-1, "lower"}, {0, "none"}, {1, "upper"}, {2, "setpoint"}}},

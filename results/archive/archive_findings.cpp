@@ -19,7 +19,7 @@ void write_finding_rows(Hdf5Group& group, const std::vector<Finding>& findings) 
   using F = Finding;
   const std::vector<Row<F>> rows{
       member_row<std::string>({"heading", "heading in tables and figures", "1", "empty: none"}, &F::label),
-      member_row<std::string>({"meaning", "which experiments are looked at, and what of them is counted"},
+      member_row<std::string>({"meaning", "which experiments the number covers, and what it counts"},
                               &F::meaning),
       value_row<std::string, F>(
           {"kind", "kind of the experiments", "1", "empty: of several kinds"},
@@ -78,12 +78,12 @@ void write_pairs(Hdf5Group& group, const StudyFindings& findings) {
       name("second", "second method of the pair", &P::second),
       value_row<std::string, P>(
           {"truth",
-           "which loops are to be flagged: those with a fault, or those with a fault that has an impact"},
+           "loops that should be flagged: those with a fault, or those with a fault that has an impact"},
           [](const P& pair) { return std::string(to_string(pair.truth)); }),
-      member_row<std::int64_t>({"pair_loops", "loops that both gave a verdict on"}, &P::loops),
-      member_row<std::int64_t, P>({"first_alone", "loops that only the first one is right on"},
+      member_row<std::int64_t>({"pair_loops", "loops on which both gave a verdict"}, &P::loops),
+      member_row<std::int64_t, P>({"first_alone", "loops on which only the first method is right"},
                                   path(&P::test, &McNemarTest::lost)),
-      member_row<std::int64_t, P>({"second_alone", "loops that only the second one is right on"},
+      member_row<std::int64_t, P>({"second_alone", "loops on which only the second method is right"},
                                   path(&P::test, &McNemarTest::gained)),
       member_row<double, P>({"p_two_sided", "exact p-value of McNemar's test, two-sided"},
                             path(&P::test, &McNemarTest::p_two_sided)),

@@ -24,9 +24,9 @@ struct SteppedCv {
 };
 
 std::vector<Row<SteppedCv>> stepped_rows(const Study& study, Eigen::Index lags) {
-  return {member_row<std::int8_t>({"side", "soft limit or setpoint that the CV is at", "1", "",
-                                   numbered({"lower", "upper", "setpoint"})},
-                                  &SteppedCv::side),
+  return {member_row<std::int8_t>(
+              {"side", "soft limit or setpoint of the CV", "1", "", numbered({"lower", "upper", "setpoint"})},
+              &SteppedCv::side),
           matrix_row<SteppedCv>(
               {"t0_step_response", "response of cv to a unit step of the limit or setpoint of active_cv", "1",
                "in the unit of cv per unit of active_cv; stays at its last value"},

@@ -34,9 +34,9 @@ std::vector<RecordRow> scenario_truth_rows(const Study& study) {
   return {
       value_row<std::string, Record>({"name", "name of the scenario"},
                                      [said](const Record& record) { return said(record).name; }),
-      value_row<std::string, Record>({"description", "what the study says of the scenario"},
+      value_row<std::string, Record>({"description", "description of the scenario in the study"},
                                      [said](const Record& record) { return said(record).description; }),
-      {{"affected", "what affects the CV, as the study says it", "1",
+      {{"affected", "faults that affect the CV, according to the study", "1",
         "mpm: model-plant mismatch; ud: unmeasured disturbance; mpm_ud: both",
         enum_words(std::array{FaultSource::none, FaultSource::mpm, FaultSource::ud, FaultSource::mpm_ud})},
        {"cv"},

@@ -14,11 +14,11 @@ std::vector<Row<SolverStatistics>> solver_rows() {
       member_row<std::int64_t>({"solver_steps", "number of samples at which the controller was solved"},
                                &S::steps),
       member_row<std::int64_t>({"solver_iterations", "number of iterations of the solver"}, &S::iterations),
-      member_row<std::int64_t>({"solver_fallbacks",
-                                "number of optimisation problems that Ipopt had to answer in place of the "
-                                "active-set method",
-                                "1", "0 unless the solver is auto"},
-                               &S::fallbacks),
+      member_row<std::int64_t>(
+          {"solver_fallbacks",
+           "number of optimisation problems that Ipopt solved instead of the active-set method", "1",
+           "0 unless the solver is auto"},
+          &S::fallbacks),
       member_row<double>({"kkt_residual_max", "largest KKT residual of a solution"},
                          &S::largest_kkt_residual)};
 }
@@ -26,7 +26,7 @@ std::vector<Row<SolverStatistics>> solver_rows() {
 std::vector<Row<AuditedStep>> audit_rows() {
   using A = AuditedStep;
   using D = AuditDifference;
-  const std::string no_answer = "NaN: one of the two has no answer";
+  const std::string no_answer = "NaN: one of the two has no solution";
   std::vector<Row<A>> rows{
       member_row<std::int64_t>({"experiment", "index of the experiment in the study"}, &A::experiment),
       member_row<std::int64_t>({"step", "step of the controller, counted over all loops of the experiment"},
@@ -46,8 +46,8 @@ std::vector<Row<AuditedStep>> audit_rows() {
   };
   compared("target", "target", "target problem", &A::targets);
   compared("move", "planned move", "MPC problem", &A::moves);
-  rows.push_back(member_row<double>({"ipopt_kkt_residual", "larger KKT residual of the two answers of Ipopt"},
-                                    &A::ipopt_kkt_residual));
+  rows.push_back(member_row<double>(
+      {"ipopt_kkt_residual", "larger KKT residual of the two solutions of Ipopt"}, &A::ipopt_kkt_residual));
   return rows;
 }
 

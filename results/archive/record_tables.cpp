@@ -200,7 +200,7 @@ std::vector<DrawRow> draw_rows(const Study& study) {
   if (study.simulation.noise.factor != Distribution::constant(1))
     rows.push_back(
         member_row<double>({"noise_factor", "factor of the standard deviations of the measurement noise", "1",
-                            "against those of the study, which the basis case has"},
+                            "relative to those of the study, which the basis case has"},
                            &Draw::noise_factor));
   if (study.world)
     rows.push_back(value_row<std::int32_t, Draw>(
@@ -234,7 +234,7 @@ std::vector<DrawRow> draw_rows(const Study& study) {
 std::vector<DrawRow> scale_rows(const Study& study) {
   const auto of_scale = [&](const char* name, const char* special, double FaultScales::*scale) {
     return value_row<double, Draw>(
-        {name, "by which the drawn sizes are scaled for the effect that the study asks for", "1", special},
+        {name, "scale of the drawn sizes that gives the effect that the study sets", "1", special},
         path(&Draw::scales, scale), [study, scale](Draw& draw, double value) {
           FaultScales scales = draw.scales;
           scales.*scale = value;
@@ -379,11 +379,11 @@ std::vector<Row<LoopConditions>> condition_rows() {
               })
               .only(RowUse::archive_only),
           row("other_cv_active",
-              "share of the samples in which a CV that the basis case has inside its range is at a "
-              "soft limit or over it",
+              "share of the samples in which a CV that is inside its range in the basis case is at a soft "
+              "limit or beyond it",
               "NaN: not known", &C::other_cv_active),
           row("mv_at_limit",
-              "share of the samples in which an MV that the basis case has free is at a hard limit",
+              "share of the samples in which an MV that is free in the basis case is at a hard limit",
               "NaN: not known", &C::mv_at_limit)};
 }
 
@@ -392,9 +392,9 @@ std::vector<Row<AssessmentRecord>> verdict_rows(const Study& study) {
   using A = AssessmentRecord;
   return {
       member_row<std::int8_t>({"assessment_status", "how the assessment by a method ended", "1",
-                               "see reason of the method's group", enum_words<AssessmentStatus>()},
+                               "see `reason` in the group of the method", enum_words<AssessmentStatus>()},
                               &A::status),
-      member_row<std::int8_t>({"flagged", "the method says that something is wrong with the loop", "1",
+      member_row<std::int8_t>({"flagged", "the method finds a fault in the loop", "1",
                                "no unless the assessment status is ok", no_yes()},
                               &A::flagged),
       member_row<double>({"score", "how far the loop is from being flagged, larger is worse", "1",
@@ -403,8 +403,8 @@ std::vector<Row<AssessmentRecord>> verdict_rows(const Study& study) {
       member_row<std::int32_t>({"predicted_cv", "position in cv of the CV with the largest score", "1",
                                 "-1: none", index_words(study.plant.cvs)},
                                &A::predicted_cv),
-      member_row<std::int8_t>({"predicted_source", "source that the method sees in the predicted CV", "1",
-                               "none: the method tells none",
+      member_row<std::int8_t>({"predicted_source", "source that the method names for the predicted CV", "1",
+                               "none: the method names none",
                                enum_words(std::array{FaultSource::none, FaultSource::mpm, FaultSource::ud,
                                                      FaultSource::mpm_ud, FaultSource::other})},
                               &A::predicted_source),
@@ -433,11 +433,12 @@ RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
           {"ivar_basis", "Ivar_basis = var y / var y of the basis case", "1",
            "NaN unless the status is ok, and where neither varies; infinite where the basis case does not"},
           "cv", study.cv_count(), &Record::ivar_basis)),
-      value_row<std::int8_t, Record>({"impact", "some Ivar_basis lies outside the band of impact", "1",
-                                      "the truth about what is wrong; no method has a part in it", no_yes()},
-                                     [options = study.diagnosis](const Record& record) {
-                                       return static_cast<std::int8_t>(has_impact(options, record));
-                                     })
+      value_row<std::int8_t, Record>(
+          {"impact", "some Ivar_basis lies outside the band of impact", "1",
+           "truth about the faults, which does not depend on any method", no_yes()},
+          [options = study.diagnosis](const Record& record) {
+            return static_cast<std::int8_t>(has_impact(options, record));
+          })
           .only(RowUse::archive_only)};
   append(of_part<Record>(condition_rows(), &Record::conditions), table.rows);
   for (const Row<AssessmentRecord>& row : verdict_rows(study))
@@ -555,7 +556,7 @@ RecordTable truth_of_loops(const Study& study) {
           .has = [](const Record& record) { return record.truth.has_value(); },
           .make = [](Record& record) { record.truth.emplace(); },
           .rows = {row("v", "measurement noise, which is in y", &LoopTruth::v),
-                   row("y_d", "what unmeasured disturbances and errors of sensors add to the CVs",
+                   row("y_d", "sum of the unmeasured disturbances and errors of sensors on the CVs",
                        &LoopTruth::y_d)}};
 }
 

@@ -213,26 +213,24 @@ class ArxOe final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo arx_oe_method() {
-  return {
-      {.name = "arx-oe",
-       .title = "after Lu et al. (2020), reconstructed",
-       .verdict = "the plant or the noise of some CV is not what it was in the benchmark",
-       .requirements = {.benchmark = true, .moving_mvs = true},
-       .locates_cvs = true,
-       .tells_sources = true,
-       .numbers =
-           {{"plant", NumberScope::cv,
-             "squared distance of the plants over the one that chance exceeds; of windows 1 + ln(rho/f) of "
-             "the "
-             "machine, which more than the share of them exceed"},
-            {"noise_model", NumberScope::cv,
-             "squared distance of the noise models over the one that chance exceeds; of windows as `plant`"},
-            {"noise_variance", NumberScope::cv,
-             "ratio of the variances of the innovations over the one that chance exceeds; NaN of windows, "
-             "whose noise model has it"}}},
-      {},
-      [](const AssessmentContext& context) { return std::make_unique<ArxOe>(context); },
-      option_table<ArxOeOptions>(keys, "options of the windows of the ARX-OE method")};
+  return {{.name = "arx-oe",
+           .title = "after Lu et al. (2020), reconstructed",
+           .verdict = "the plant or the noise of some CV is not what it was in the benchmark",
+           .requirements = {.benchmark = true, .moving_mvs = true},
+           .locates_cvs = true,
+           .tells_sources = true,
+           .numbers =
+               {{"plant", NumberScope::cv,
+                 "squared distance of the plants over the threshold of chance; for windows 1 + ln(rho/f) of "
+                 "the support vector machine that more than the share of the windows exceed"},
+                {"noise_model", NumberScope::cv,
+                 "squared distance of the noise models over the threshold of chance; for windows as `plant`"},
+                {"noise_variance", NumberScope::cv,
+                 "ratio of the variances of the innovations over the threshold of chance; NaN for windows, "
+                 "whose noise model includes it"}}},
+          {},
+          [](const AssessmentContext& context) { return std::make_unique<ArxOe>(context); },
+          option_table<ArxOeOptions>(keys, "options of the windows of the ARX-OE method")};
 }
 
 }  // namespace mpm

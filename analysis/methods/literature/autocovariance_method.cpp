@@ -346,21 +346,22 @@ class Autocovariance final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo autocovariance_method() {
-  return {{.name = "autocovariance",
-           .title = "after Wang et al. (2018), reconstructed",
-           .verdict = "the autocovariances of some CV are not those of the controller on its own model",
-           .requirements = {.benchmark = true, .moving_mvs = true, .nominal_loop = true},
-           .locates_cvs = true,
-           .names_channels = true,
-           .tells_sources = true,
-           .names_mismatches = true,
-           .numbers = {{"chi2", NumberScope::cv,
-                        "squared distance of the autocovariances from those of the model"},
-                       {"misfit", NumberScope::loop,
-                        "that of all CVs from the best mismatch, over the one that chance exceeds"}}},
-          {},
-          [](const AssessmentContext& context) { return std::make_unique<Autocovariance>(context); },
-          option_table<AutocovarianceOptions>(keys, "options of the autocovariances of a linear loop")};
+  return {
+      {.name = "autocovariance",
+       .title = "after Wang et al. (2018), reconstructed",
+       .verdict = "the autocovariances of some CV are not those of the controller on its own model",
+       .requirements = {.benchmark = true, .moving_mvs = true, .nominal_loop = true},
+       .locates_cvs = true,
+       .names_channels = true,
+       .tells_sources = true,
+       .names_mismatches = true,
+       .numbers = {{"chi2", NumberScope::cv,
+                    "squared distance of the autocovariances from those of the model"},
+                   {"misfit", NumberScope::loop,
+                    "squared distance for all CVs from the best mismatch, over the threshold of chance"}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<Autocovariance>(context); },
+      option_table<AutocovarianceOptions>(keys, "options of the autocovariances of a linear loop")};
 }
 
 }  // namespace mpm

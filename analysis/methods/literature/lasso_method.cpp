@@ -309,7 +309,7 @@ AssessmentMethodInfo lasso_method() {
        .information = ModelInformation::shown,
        .stated_false_alarms = kLassoFalseAlarms,
        .numbers = {{"ratio", NumberScope::channel,
-                    "explained squares of the channel over those at which chance selects it"},
+                    "squares that the channel explains, over the threshold at which chance selects it"},
                    {"gain_factor", NumberScope::channel,
                     "static gain of a selected channel over that of the model"}}},
       {},

@@ -160,11 +160,12 @@ AssessmentMethodInfo local_method() {
        .information = ModelInformation::shown,
        .stated_false_alarms = kLocalFalseAlarms,
        .numbers = {{"f", NumberScope::cv, "chi2 of the normalised gradient over its degrees of freedom"},
-                   {"z_gain", NumberScope::channel, "gradient by the factor of the gain over its deviation"},
+                   {"z_gain", NumberScope::channel,
+                    "gradient with respect to the factor of the gain, over its standard deviation"},
                    {"z_time_constant", NumberScope::channel,
-                    "gradient by the factor of the time constant over its deviation"},
+                    "gradient with respect to the factor of the time constant, over its standard deviation"},
                    {"z_dead_time", NumberScope::channel,
-                    "gradient by the shift of the dead time over its deviation"}}},
+                    "gradient with respect to the shift of the dead time, over its standard deviation"}}},
       {},
       [](const AssessmentContext& context) { return std::make_unique<Local>(context); }};
 }

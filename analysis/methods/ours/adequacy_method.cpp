@@ -99,10 +99,10 @@ AssessmentMethodInfo adequacy_method() {
            .names_channels = true,
            .tells_sources = true,
            .information = ModelInformation::unused,
-           .numbers =
-               {{"gain", NumberScope::channel,
-                 "expected gain of the repair of this channel, in what the loop costs; none: not simulated"},
-                {"p_worth", NumberScope::channel, "probability that it is above `worth`"}}},
+           .numbers = {{"gain", NumberScope::channel,
+                        "expected gain of the repair of this channel, as a share of the cost of the loop; "
+                        "none: not simulated"},
+                       {"p_worth", NumberScope::channel, "probability that this gain is above `worth`"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<Adequacy>(context); },
           option_table<AdequacyOptions>(keys, "options of the test whether the model is adequate")};

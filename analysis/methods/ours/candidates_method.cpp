@@ -99,9 +99,10 @@ AssessmentMethodInfo candidates_method() {
            .tells_sources = true,
            .names_candidates = true,
            .information = ModelInformation::shown,
-           .numbers = {{"candidate", NumberScope::cv, "position of the logged signal with the least p-value"},
-                       {"log10_p", NumberScope::cv,
-                        "log10 p of this signal not helping to predict the error of the CV"}}},
+           .numbers =
+               {{"candidate", NumberScope::cv, "position of the logged signal with the smallest p-value"},
+                {"log10_p", NumberScope::cv,
+                 "log10 p of the hypothesis that this signal does not help to predict the error of the CV"}}},
           {},
           [](const AssessmentContext& context) { return std::make_unique<Candidates>(context); },
           option_table<CandidatesOptions>(

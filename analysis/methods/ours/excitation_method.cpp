@@ -128,23 +128,25 @@ class Excitation final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo excitation_method() {
-  return {{.name = "excitation",
-           .title = "simulation errors that follow the excitation",
-           .verdict = "signals from outside of the loop help to predict the simulation error of some CV: the "
-                      "model is wrong, whatever disturbs the loop",
-           .requirements = {.complete_record = false},
-           .locates_cvs = true,
-           .names_channels = false,
-           .tells_sources = true,
-           .information = ModelInformation::shown,
-           .numbers = {{"log10_p", NumberScope::cv,
-                        "log10 p of no signal from outside helping to predict the error of the CV"},
-                       {"autoregression", NumberScope::cv, "order of the autoregression of the error"}}},
-          {},
-          [](const AssessmentContext& context) { return std::make_unique<Excitation>(context); },
-          option_table<ExcitationOptions>(
-              keys, "options of the test of the simulation errors against signals from outside"),
-          [](const MethodOptions& options) { return options.of<ExcitationOptions>().regression.alpha; }};
+  return {
+      {.name = "excitation",
+       .title = "simulation errors that follow the excitation",
+       .verdict = "signals from outside of the loop help to predict the simulation error of some CV: the "
+                  "model is wrong, whatever disturbs the loop",
+       .requirements = {.complete_record = false},
+       .locates_cvs = true,
+       .names_channels = false,
+       .tells_sources = true,
+       .information = ModelInformation::shown,
+       .numbers =
+           {{"log10_p", NumberScope::cv,
+             "log10 p of the hypothesis that no signal from outside helps to predict the error of the CV"},
+            {"autoregression", NumberScope::cv, "order of the autoregression of the error"}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<Excitation>(context); },
+      option_table<ExcitationOptions>(
+          keys, "options of the test of the simulation errors against signals from outside"),
+      [](const MethodOptions& options) { return options.of<ExcitationOptions>().regression.alpha; }};
 }
 
 }  // namespace mpm

@@ -58,7 +58,8 @@ ChainRows chain_rows(Eigen::Index cvs) {
   of_each_cv({"ivar", "Ivar = var y / var y0 (3.24, 6.7)"}, &Diagnosis::ivar);
   of_each_cv({"ivar_diag", "Ivar_diag = var y / var y0_diag (4.14, 6.8)"}, &Diagnosis::ivar_diag);
   of_loop({.name = "location_margin",
-           .meaning = "how much farther from 1 Ivar_diag of the located CV is than that of any other",
+           .meaning = "distance of Ivar_diag of the located CV from 1, less that of the CV with the next "
+                      "largest distance",
            .heading = "location margin"},
           &Diagnosis::location_margin);
   of_loop({"co_dkts", "mean correlation of the differenced moving kurtosis (6.13)"}, indicator, &M::co_dkts);
