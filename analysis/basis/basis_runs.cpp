@@ -36,7 +36,7 @@ void require_start(const Trajectory& loop) {
 
 /// Of a controller that runs on the plant only there is no S0, and nothing that is made of it.
 void refuse_without_sensitivity(const Study& study) {
-  const std::string found = "a program that runs on the plant only (on_model is false)";
+  const std::string found = "a program that cannot run on its model (on_model is false)";
   if (study.diagnosis.self_check == SelfCheck::ivar)
     throw InputError("controller.program", found,
                      "with diagnosis.self_check = \"repeat\" or \"none\": Ivar of the nominal loop needs S0");

@@ -32,8 +32,8 @@ std::string trouble_of_response(const Eigen::Ref<const Eigen::RowVectorXd>& own,
     return fmt::format("has not settled after {} samples: it moves by {:.2g} of the step in their last tenth",
                        samples, drift);
   if (reaches_reference && !(std::abs(gain - 1.0) <= kGainError))
-    return fmt::format("ends at {:.3g} of the step of its reference after {} samples, where 1 is right", gain,
-                       samples);
+    return fmt::format("ends at {:.3g} of the step of its reference after {} samples, but must end at 1",
+                       gain, samples);
   return "";
 }
 
@@ -85,7 +85,7 @@ void check_basis(const Study& study, const QpSolverFactory& factory, BasisCase& 
   }
   if (basis.trajectory.status != ControlStatus::ok) {
     basis.explanation =
-        fmt::format("the nominal loop is {} at sample {}: its excitation is too strong for its limits",
+        fmt::format("the nominal loop is {} at sample {}: the excitation is too strong for the limits",
                     to_string(basis.trajectory.status), basis.trajectory.samples_done);
     return;
   }
@@ -96,7 +96,7 @@ void check_basis(const Study& study, const QpSolverFactory& factory, BasisCase& 
   }
   basis.explanation = trouble_of_sensitivity(study, basis);
   if (basis.explanation.empty() && is_at_rest(study, basis.trajectory))
-    basis.explanation = "the nominal loop stands still: without noise and excitation no index has a meaning";
+    basis.explanation = "the nominal loop stands still: without noise and excitation no index is meaningful";
   if (!basis.explanation.empty())
     return;
   const bool repeated = options.self_check == SelfCheck::repeat;

@@ -40,8 +40,8 @@ bool has_same_loops(const CellScores& cell, const CellScores* theirs, const std:
   else {
     if (const std::size_t differing = loops_that_differ(cell, *theirs); differing > 0)
       notes.push_back(
-          fmt::format("{}: {} of the {} loops came out otherwise in the finished board, and count "
-                      "for your own methods alone",
+          fmt::format("{}: {} of the {} loops ended differently in the finished board, and count only for "
+                      "your own methods",
                       name, differing, cell.truths.size()));
     return true;
   }

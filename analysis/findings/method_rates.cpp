@@ -209,9 +209,8 @@ constexpr std::array<EstimateRow, 10> kEstimates{{
        return of.repair_gain_share_05.mean(study.aggregate.confidence);
      }},
     {{"least_effect_80", "Least effect, 80 % found",
-      "least change of the variance of a CV, as a share of it, from which on 80 % of the faults are above "
-      "the "
-      "threshold calibrated for 5 % false alarms; infinite if no faults are found so often",
+      "smallest relative change of the variance of a CV from which on 80 % of the faults are above the "
+      "threshold calibrated for 5 % false alarms; infinite if even large faults are not found so often",
       true, StudyFeature::calibrated_worlds},
      [](const LoopMeasures& of, const Study& study) {
        return least_effect(of.effects, 0.8, study.aggregate.confidence, study.seed);
@@ -225,7 +224,7 @@ constexpr std::array<EstimateRow, 10> kEstimates{{
        return median_estimate(of.delays, study.aggregate.confidence);
      }},
     {{"false_alarms_a_day", "Alarms a day",
-      "number of alarms that begin in windows without a fault, divided by the time that these windows watch: "
+      "number of alarms that begin in windows without a fault, divided by the time that these windows cover: "
       "before the onset, and in loops without a fault and with the designed tuning",
       true, StudyFeature::monitoring},
      [](const LoopMeasures& of, const Study& study) { return alarms_a_day(study, of); }},

@@ -73,7 +73,7 @@ constexpr std::array<RateRow, 30> kRates{{
      [](const JudgedLoop& l) { return is_right(l.said.channel); }},
     {{"parameter_impact", "Parameter named, impact",
       "share of the loops with one mismatch of an MV that has an impact in which the loop is flagged and the "
-      "method is surest of the right channel and parameter"},
+      "method is most certain of the right channel and parameter"},
      [](const JudgedLoop& l) { return l.truth.impact && is_judged(l.said.parameter); },
      [](const JudgedLoop& l) { return is_right(l.said.parameter); }},
     {{"size_covered", "Size in its interval",
@@ -165,7 +165,7 @@ constexpr std::array<RateRow, 30> kRates{{
      [](const JudgedLoop& l) { return is_asked(l) && is_judged(l.said.channel); },
      [](const JudgedLoop& l) { return l.said.above_05 && is_right(l.said.channel); }},
     {{"parameter_05_impact", "Parameter at 5 %",
-      "the same, of which the method is surest of the right channel and parameter", false,
+      "the same, of which the method is most certain of the right channel and parameter", false,
       StudyFeature::calibrated_worlds},
      [](const JudgedLoop& l) { return is_asked(l) && is_judged(l.said.parameter); },
      [](const JudgedLoop& l) { return l.said.above_05 && is_right(l.said.parameter); }},

@@ -31,7 +31,7 @@ Eigen::MatrixXd stepped(Plant& plant, Eigen::Index input, double size, int sampl
   for (int k = 0; k < samples; ++k) {
     if (plant.advance(u) != PlantStatus::ok)
       throw InputError(fmt::format("step test: input {} by {}", input, size), plant.failure(),
-                       "steps that the plant bears");
+                       "steps that the plant can follow");
     y.col(k) = plant.output();
   }
   return y;

@@ -40,7 +40,7 @@ std::optional<std::string> unusable_benchmark(const AssessmentContext& context) 
   if (!context.benchmark)
     return std::nullopt;
   if (const std::optional<std::string> found = out_of_proportion(context.study, *context.benchmark))
-    return fmt::format("the benchmark is out of all proportion: {}", *found);
+    return fmt::format("the benchmark has implausible values: {}", *found);
   return std::nullopt;
 }
 
@@ -146,7 +146,7 @@ Assessment Assessor::asked_of_seen(const AssessedLoop& loop) {
   if (unusable_)
     return Assessment::failed(*unusable_);
   if (const std::optional<std::string> found = out_of_proportion(context_.study, loop))
-    return Assessment::failed(fmt::format("the loop is out of all proportion: {}", *found));
+    return Assessment::failed(fmt::format("the loop has implausible values: {}", *found));
   try {
     if (!method_)
       learn();

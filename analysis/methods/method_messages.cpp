@@ -56,7 +56,7 @@ class AnswerReader {
     Assessment assessment;
     const Json* const flagged = given(answer, "flagged");
     if (flagged == nullptr || !flagged->is_boolean())
-      refuse("flagged", flagged ? *flagged : Json(), "true, false, or an `error` in its place");
+      refuse("flagged", flagged ? *flagged : Json(), "true, false, or an `error` instead");
     assessment.flagged = flagged->get<bool>();
     const Json* const score = given(answer, "score");
     assessment.score = score ? number("score", *score) : assessment.flagged ? 1.0 : 0.0;
@@ -161,7 +161,7 @@ class AnswerReader {
     const Json* const source = given_if(method_.tells_sources, answer, "source", "source");
     const Json* const sources = given_if(method_.tells_sources, answer, "cv_source", "source");
     if (source != nullptr && cv == nullptr && *source != "none")
-      refuse("source", *source, "none, or the CV that it is of as well");
+      refuse("source", *source, "none, or a source together with its CV");
     if (cv == nullptr && flags == nullptr)
       return;
     const std::size_t count = plant_.cvs.size();
@@ -255,13 +255,13 @@ class AnswerReader {
     if (numbers == nullptr)
       return;
     if (!numbers->is_object())
-      refuse("numbers", *numbers, "an object with numbers that the description of the method has");
+      refuse("numbers", *numbers, "an object with numbers that the description of the method lists");
     for (const auto& item : numbers->items()) {
       const auto info = std::find_if(method_.numbers.begin(), method_.numbers.end(),
                                      [&](const auto& each) { return each.name == item.key(); });
       if (info == method_.numbers.end())
         throw InputError(place_, fmt::format("the number '{}'", foreign_text(item.key(), kShownOfKey)),
-                         "numbers that the description of the method has");
+                         "numbers that the description of the method lists");
       add_number(*info, item.value(), assessment.numbers);
     }
   }
@@ -357,7 +357,7 @@ const std::vector<LoopSignal>& loop_signals() {
       {"y_sim", "cv", "output of the nominal model under the MVs and measured disturbances",
        &AssessedLoop::y_sim},
       {"y_set", "cv", "setpoints; NaN for a CV without one", &AssessedLoop::y_set},
-      {"candidates", "candidate", "logged signals that the model does not know", &AssessedLoop::candidates}};
+      {"candidates", "candidate", "logged signals that are not in the model", &AssessedLoop::candidates}};
   return signals;
 }
 

@@ -29,7 +29,7 @@ namespace mpm {
   method(mpmbench)  /* impact, CV, source, channel, parameter and size together */ \
   method(order)     /* do the MVs help to predict the simulation errors? */    \
   method(excitation) /* do signals from outside of the loop? */                \
-  method(candidates) /* do logged signals that the model does not know? */      \
+  method(candidates) /* do logged signals that are not in the model? */      \
   method(likelihood) /* the posterior of all faults, of any size */            \
   method(adequacy)  /* does the repair of a channel bring more than it is worth? */ \
   method(ceiling)    /* the same with the distributions of the study */       \

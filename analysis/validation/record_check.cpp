@@ -75,7 +75,7 @@ void refuse_out_of_proportion(const RecordedVariable& variable) {
     if (const double value = variable.values(k); std::abs(value) > kLargestValue)
       throw InputError(
           fmt::format("record of {}", variable.name),
-          fmt::format("{:g} at sample {}, out of all proportion", value, k),
+          fmt::format("{:g} at sample {}, which is implausible", value, k),
           fmt::format("values up to {:g}: look at its unit (data.scale) and its quality (data.quality)",
                       kLargestValue));
 }

@@ -51,8 +51,8 @@ std::vector<std::string> words_of(const std::filesystem::path& fmu) {
 void require_trust(const std::vector<std::string>& words, const char* what, const std::string& shown) {
   if (!trust().has(words))
     throw UntrustedProgram(
-        fmt::format("found {} `{}`, which a study names that is not from a file of yours; allowed: only with "
-                    "--trust-programs, when you trust whoever made the archive",
+        fmt::format("found {} `{}` in a study that is not from a file of yours; allowed: only with "
+                    "--trust-programs, if you trust the author of the archive",
                     what, foreign_text(shown, kShownOfCommand)));
 }
 

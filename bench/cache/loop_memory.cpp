@@ -110,7 +110,8 @@ void KnownLoop::require_expected() const {
           !is_same_answer(before, now))
         throw BrokenPromise(
             fmt::format("method '{}': threshold_option", method),
-            fmt::format("another answer on loop {} than with the threshold before", record.draw.index),
+            fmt::format("an answer on loop {} that differs from the one with the previous threshold",
+                        record.draw.index),
             "answers that depend on the loop, the command with the content of its files and the "
             "other options, and by their flags alone on this one; --fresh asks about all loops "
             "again");

@@ -213,7 +213,7 @@ class LoopFarm {
 
   void tell_of_second_try(const std::string& why) const {
     if (work_.on_warning)
-      work_.on_warning(fmt::format("{}; what it was doing is tried once more", why));
+      work_.on_warning(fmt::format("{}; its work is tried once more", why));
   }
 
   void deliver(std::int64_t key, LoopResult result) {

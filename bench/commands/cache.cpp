@@ -46,7 +46,7 @@ ExitCode show_cache(const CacheArguments& options) {
 
 void add_cache(CommandSet& commands) {
   const auto options = std::make_shared<CacheArguments>();
-  CLI::App& app = commands.add("cache", "Show or clear the loops that are kept for the next suite",
+  CLI::App& app = commands.add("cache", "Show or clear the cache of loops for the next suite",
                                [options] { return show_cache(*options); });
   app.add_flag("--clear", options->clear, "Remove them all");
   add_json(app, options->json);

@@ -144,7 +144,7 @@ ExitCode check(const CheckArguments& options) {
 void add_check(CommandSet& commands) {
   const auto options = std::make_shared<CheckArguments>();
   CLI::App& app =
-      commands.add("check", "Hold an archive or the run of a suite against the limits of a gate file",
+      commands.add("check", "Compare an archive or the run of a suite with the limits of a gate file",
                    [options] { return check(*options); });
   add_path(app, "ARCHIVE", options->archive, "Archive, or the folder of a suite")->required();
   add_path(app, "--gates", options->gates, "Gate file (TOML)")->required();

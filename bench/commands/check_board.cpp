@@ -101,11 +101,13 @@ Section rerun_section(const std::vector<RerunRate>& rates, const std::string& fi
   section.add(std::move(table));
   const auto other = std::count_if(rates.begin(), rates.end(),
                                    [](const RerunRate& each) { return each.differs(kSignificance); });
-  section.say(other == 0 ? fmt::format("No rate differs beyond chance (p < {:g}, corrected for {} rates).",
-                                       kSignificance, rates.size())
-                         : fmt::format("{} of {} rates differ beyond chance: the file is not what the method "
-                                       "answers.",
-                                       other, rates.size()));
+  section.say(
+      other == 0
+          ? fmt::format("No rate differs beyond chance (p < {:g}, corrected for {} rates).", kSignificance,
+                        rates.size())
+          : fmt::format(
+                "{} of {} rates differ beyond chance: the file does not have the answers of the method.",
+                other, rates.size()));
   return section;
 }
 
@@ -130,8 +132,9 @@ ExitCode check_board(const CheckBoardArguments& options) {
       troubles.empty()
           ? "Checked: suite, version and seed; the studies, kinds, CVs and worlds of all loops are those "
             "that "
-            "the suite draws; names are free; no answer is impossible. Not checked, and no file can show it: "
-            "that the method gave these answers. A maintainer's rerun on a fresh seed decides (--rerun)."
+            "the suite draws; names are free; no answer is impossible. Not checked, because no file can show "
+            "it: whether the method gave these answers. A maintainer's rerun on a fresh seed decides "
+            "(--rerun)."
           : "It cannot be submitted as it is.",
       kLeaderboardWidth);
 

@@ -171,16 +171,16 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named,
 }
 
 void add_part_of(CLI::App& app, std::string& shard, const std::string& what) {
-  add_part_option(
-      app, "--shard", shard, "I/N, auto or auto/N",
-      fmt::format("Do part I/N of the {}: every Nth, from the Ith on; auto and auto/N as for `run`. Without "
-                  "it, the command does what the parts have left and shows everything",
-                  what));
+  add_part_option(app, "--shard", shard, "I/N, auto or auto/N",
+                  fmt::format("Do part I/N of the {}: every Nth, from the Ith on; auto and auto/N as for "
+                              "`run`. Without it, the command does the rest and shows everything",
+                              what));
 }
 
 void add_shard_interval(CLI::App& app, double& interval) {
-  app.add_option("--shard-interval", interval,
-                 "Seconds between saves of finished experiments, the most that a killed run can lose")
+  app.add_option(
+         "--shard-interval", interval,
+         "Seconds between saves of finished experiments; a killed run loses at most the work of this time")
       ->check(number_between(0.0, 1e9))
       ->capture_default_str();
 }
@@ -196,7 +196,7 @@ void add_overwrite(CLI::App& app, bool& overwrite) {
 }
 
 void add_fresh(CLI::App& app, bool& fresh) {
-  app.add_flag("--fresh", fresh, "Run all loops, also those that the cache of an earlier run has");
+  app.add_flag("--fresh", fresh, "Run all loops, also those in the cache");
 }
 
 void add_full(CLI::App& app, bool& full) {

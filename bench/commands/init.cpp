@@ -153,7 +153,7 @@ std::string words_on_guesses(const DataSketch& data, const std::vector<std::stri
         is_cv ? " Its noise is that of the new values." : "");
   }
   for (const auto& [mv, rests] : data.rests)
-    text += fmt::format("# To do: what {} costs, if it costs anything: {}.\n", mv, rests);
+    text += fmt::format("# To do: the cost of {}, if it has one: {}.\n", mv, rests);
   return text + "\n";
 }
 

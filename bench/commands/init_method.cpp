@@ -43,7 +43,7 @@ import mpmbench  # noqa: E402
 
 
 def mean_squares(loop):
-    """Of the errors of the model, one a CV; samples that are missing do not count."""
+    """Mean square of the error of the model of each CV; missing samples do not count."""
     return numpy.nanmean((loop.y - loop.y_sim) ** 2, axis=1)
 
 
@@ -66,7 +66,7 @@ constexpr std::string_view kOctaveMethod =
 1;  % a script, which defines functions
 
 function squares = mean_squares (loop)
-  % Of the errors of the model, one a CV.
+  % Mean square of the error of the model of each CV.
   squares = mean ((loop.y - loop.y_sim) .^ 2, 2);
 end
 
@@ -136,7 +136,7 @@ void require_unknown_name(const std::filesystem::path& file, const std::string& 
     return;
   }
   throw InputError("FILE",
-                   fmt::format("'{}', the name of a {}, which the file would hide from what uses it", name,
+                   fmt::format("'{}', the name of a {}, which the file would hide from its users", name,
                                file.extension() == ".py" ? "module of Python" : "function of Octave"),
                    "another name");
 }

@@ -91,7 +91,7 @@ ExitCode report(const ReportArguments& options) {
 void add_report(CommandSet& commands) {
   const auto options = std::make_shared<ReportArguments>();
   CLI::App& app =
-      commands.add("report", "Write what a study found as one HTML page, and its figures as files",
+      commands.add("report", "Write the results of a study as one HTML page, and its figures as files",
                    [options] { return report(*options); });
   app.add_option("ARCHIVE", options->archives,
                  "Archive; with two, the page shows what changed from the first to the second")

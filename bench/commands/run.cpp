@@ -244,8 +244,8 @@ void add_audit(CLI::App& app, double& share) {
 void add_store(CLI::App& app, StorePolicy& store) {
   add_choice<StorePolicy>(
       app, "--store", store, store_policies(),
-      "Loop data to keep: of no experiment, of those with a wrong verdict, of all, or of all with what only "
-      "a simulation knows (noise, disturbances, loops with one of two faults alone)");
+      "Loop data to keep: of no experiment, of those with a wrong verdict, of all, or of all with the truth "
+      "of the simulation (noise, disturbances, loops with one of two faults alone)");
 }
 
 /// `run` must live until the command line is read.
@@ -289,7 +289,7 @@ void add_run(CommandSet& commands) {
   add_interruption(app, options->run);
   add_dry_run(app, options->dry_run);
   CLI::Option* const verbose = app.add_flag(
-      "--verbose", options->verbose, "Report what is read, decided and done, and how long each stage takes");
+      "--verbose", options->verbose, "Report inputs, decisions and steps, and how long each stage takes");
   add_quiet(app, options->quiet, "No progress and no summary")->excludes(verbose);
 }
 

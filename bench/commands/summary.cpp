@@ -96,7 +96,7 @@ void add_summary(CommandSet& commands) {
   const auto options = std::make_shared<SummaryArguments>();
   CLI::App& app = commands.add(
       "summary",
-      "Print what a study found beside reported values; also the results so far of an unfinished run",
+      "Print the results of a study beside reported values; also the results so far of an unfinished run",
       [options] { return summary(*options); });
   add_path(app, "ARCHIVE", options->archive,
            "Archive, also one that is not written yet, or a folder with the shards or parts of a run")

@@ -36,9 +36,9 @@ void require_version(ByteReader& reader, const std::string& file) {
 }  // namespace
 
 ShardGone::ShardGone(const std::filesystem::path& shard)
-    : ArchiveError(
-          fmt::format("{}: the file has gone, since its run is still at work; run the same command again",
-                      shard.string())) {}
+    : ArchiveError(fmt::format(
+          "{}: the file is gone, because its run is still in progress; run the same command again",
+          shard.string())) {}
 
 UnreadableShard::UnreadableShard(const std::filesystem::path& shard, const std::string& why)
     : InputError(shard.string(), fmt::format("a whole shard with unreadable content ({})", why),

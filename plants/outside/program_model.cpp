@@ -71,7 +71,7 @@ class ProgramSimulation final : public ForeignSimulation {
     PlantJson answer = PlantJson::parse(line, nullptr, false);
     if (!answer.is_object())
       throw ForeignFailure(
-          fmt::format("an answer that is no JSON object: {}", foreign_text(line, kShownOfAnswer)));
+          fmt::format("an answer that is not a JSON object: {}", foreign_text(line, kShownOfAnswer)));
     if (const auto error = answer.find("error"); error != answer.end())
       throw ForeignFailure(
           fmt::format("it says: {}", foreign_text(error->dump(-1, ' ', true), kShownOfAnswer)));

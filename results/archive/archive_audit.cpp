@@ -16,7 +16,7 @@ void write_audit(Hdf5Group& root, const std::vector<AuditedStep>& audit) {
   if (audit.empty())
     return;
   Hdf5Group group = root.create_group(kAuditGroup);
-  group.write_attribute("title", "Steps whose problems Ipopt solved once more, and how its answers differ");
+  group.write_attribute("title", "Steps whose problems Ipopt solved once more, and how its solutions differ");
   std::vector<std::int64_t> numbers(audit.size());
   std::iota(numbers.begin(), numbers.end(), 0);
   group.write_dimension(kDimension, numbers, attributes<std::int64_t>({kDimension, "audited step"}));

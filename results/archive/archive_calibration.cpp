@@ -44,7 +44,7 @@ void write_calibration(Hdf5Group& root, const Campaign& campaign) {
     return;
   const std::vector<CalibrationLoop>& loops = campaign.calibration.loops;
   Hdf5Group group = root.create_group(kCalibrationGroup);
-  group.write_attribute("title", "What the methods say of loops of another seed, for thresholds");
+  group.write_attribute("title", "Scores of the methods on loops of another seed, for thresholds");
   group.write_attribute("seed", campaign.calibration.seed);
   group.write_attribute("false_alarms", campaign.study.calibration->false_alarms);
   std::vector<std::int64_t> numbers(loops.size());

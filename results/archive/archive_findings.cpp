@@ -24,7 +24,7 @@ void write_finding_rows(Hdf5Group& group, const std::vector<Finding>& findings) 
       value_row<std::string, F>(
           {"kind", "kind of the experiments", "1", "empty: of several kinds"},
           [](const F& finding) { return std::string(finding.kind ? to_string(*finding.kind) : ""); }),
-      member_row<std::string>({"of_method", "method whose answers they are", "1", "empty: of no method"},
+      member_row<std::string>({"of_method", "method whose answers are counted", "1", "empty: of no method"},
                               &F::method),
       member_row<std::int8_t>(
           {"form", "how it is read", "1", "share: of experiments, 0 to 1", enum_words<FindingForm>()},

@@ -120,8 +120,9 @@ void take_draw(ExperimentRecord& record, const Study& study, const std::string& 
 void require_order(const std::vector<std::int64_t>& indices, const std::string& file) {
   const auto place = std::adjacent_find(indices.begin(), indices.end(), std::greater_equal<>());
   if (place != indices.end())
-    throw ArchiveError(fmt::format("{}: variable 'experiment': found {} after {}; allowed: indices that grow",
-                                   file, *(place + 1), *place));
+    throw ArchiveError(
+        fmt::format("{}: variable 'experiment': found {} after {}; allowed: indices in ascending order", file,
+                    *(place + 1), *place));
   if (!indices.empty() && indices.front() < 0)
     throw ArchiveError(
         fmt::format("{}: variable 'experiment': found {}; allowed: 0 or more", file, indices.front()));

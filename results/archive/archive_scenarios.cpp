@@ -55,7 +55,7 @@ void write_scenarios(Hdf5Group& root, const Campaign& campaign) {
   if (!study.names_scenarios())
     return;
   Hdf5Group group = root.create_group(kScenariosGroup);
-  group.write_attribute("title", "Named scenarios: what the study says of each CV, and what the chain says");
+  group.write_attribute("title", "Named scenarios: each CV according to the study and to the chain");
   group.write_dimension("experiment", indices_of(records),
                         attributes<std::int64_t>({"experiment", "index of the experiment in the study"}));
   write_variable_dimension(group, "cv", "controlled variable", study.plant.cvs);

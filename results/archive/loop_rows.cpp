@@ -34,7 +34,7 @@ std::vector<Row<AuditedStep>> audit_rows() {
   const auto compared = [&](const std::string& name, const std::string& x, const std::string& problem,
                             D A::*of) {
     rows.push_back(member_row<std::int8_t, A>(
-        {name + "_same_status", "both solvers say the same of the " + problem, "1", "", no_yes()},
+        {name + "_same_status", "both solvers give the same status for the " + problem, "1", "", no_yes()},
         path(of, &D::same_status)));
     rows.push_back(member_row<double, A>(
         {name + "_difference", "largest difference of a " + x, "1", "in MV units; " + no_answer},

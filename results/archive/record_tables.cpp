@@ -291,10 +291,9 @@ std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
       of_cv({"violation", "what the fault adds to the mean distance outside the soft limits",
              common_unit(study.plant.cvs), same},
             &C::violation),
-      member_row<double>(
-          {"loss_ratio", "cost of the loop with the fault over that without it", "1",
-           same + ", and where neither costs anything; infinite where the latter costs nothing"},
-          &C::loss_ratio),
+      member_row<double>({"loss_ratio", "cost of the loop with the fault over that without it", "1",
+                          same + ", or if both costs are 0; infinite if only the latter is 0"},
+                         &C::loss_ratio),
       member_row<double>({"loss_ratio_error", "standard error of loss_ratio", "1",
                           "NaN: of one pair of loops, or as loss_ratio"},
                          &C::error),
@@ -305,9 +304,9 @@ std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
   if (study.diagnosis.impact == ImpactMeasure::cost)
     append<FaultCost>(
         {of_cv({"cost_ratio",
-                "cost of the CV as its controller has it, from the onset on, over that without the fault: "
-                "squared distance from the setpoint, or outside of the soft limits with the variance of the "
-                "noise",
+                "cost of the CV in its controller from the onset on, over the cost without the fault: "
+                "squared distance from the setpoint, or squared distance outside of the soft limits plus the "
+                "variance of the noise",
                 "1", same},
                &C::cost_ratio),
          of_cv({"cost_ratio_error", "standard error of cost_ratio", "1", "NaN: as loss_ratio_error"},
@@ -348,8 +347,7 @@ std::vector<Row<RepairGains>> repair_gain_rows(const Study& study) {
     rows.push_back(repair_gain_row(
         study,
         {name,
-         "what the loop costs less once the controller's model has the true channel, over what it costs "
-         "without the fault",
+         "cost that the true channel in the model of the controller saves, over the cost without the fault",
          "1", "0: plant and model agree; NaN: not computed, or the repaired loop does not run to its end"},
         inputs, first, count, &RepairGains::gain));
     rows.push_back(repair_gain_row(
@@ -552,7 +550,7 @@ RecordTable truth_of_loops(const Study& study) {
   };
   return {.group = "truth",
           .dimension = "stored",
-          .title = "What only a simulation knows of the loops that were kept",
+          .title = "Signals of the stored loops that only a simulation knows",
           .has = [](const Record& record) { return record.truth.has_value(); },
           .make = [](Record& record) { record.truth.emplace(); },
           .rows = {row("v", "measurement noise, which is in y", &LoopTruth::v),

@@ -97,7 +97,7 @@ Figure worst_figure(const RecordAssessment& of) {
   Figure figure;
   figure.name = "measured-and-model";
   figure.caption =
-      fmt::format("{}: measured, and what the model makes of the recorded MVs and disturbances{}{}",
+      fmt::format("{}: measured, and simulated by the model from the recorded MVs and disturbances{}{}",
                   as_label(variable.name), of.model_error > 0.0 ? ", but for a constant" : "",
                   of.verdict.model.since ? "; shaded since something is wrong" : "");
   figure.legend = {{"measured", measured}, {"model", model}};
@@ -262,7 +262,7 @@ Section windows_section(const RecordAssessment& of) {
   Section section{"windows", "Over time"};
   const Eigen::MatrixXd flags = of.said.front().values("window_flagged");
   const Eigen::MatrixXd scores = of.said.front().values("window_score");
-  Table table("The same method on a window that moves over the record",
+  Table table("Verdicts of the same method on a window that moves over the record",
               {{"window", Table::Align::left}, {"flagged"}, {"score"}});
   for (int window = 0; window < flags.cols(); ++window)
     table.row({as_label(window_text(of, window)), word(flags(0, window)), Number{scores(0, window)}});
@@ -276,13 +276,11 @@ Section windows_section(const RecordAssessment& of) {
 /// What each method says, and how often it is right on simulated loops where there are some.
 Section trust_section(const RecordAssessment& of) {
   Section section{"methods", "The methods"};
-  Table table(
-      of.trial ? fmt::format(
-                     "What each method says of this record, and what it made of {} simulated loops of this "
-                     "controller, excitation and length, in %",
-                     of.trial->loops)
-               : "What each method says of this record",
-      {{"method", Table::Align::left}, {"flagged"}, {"score"}, {"CV"}, {"source"}});
+  Table table(of.trial ? fmt::format("Verdict of each method on this record, and its results on {} simulated "
+                                     "loops of this controller, excitation and length, in %",
+                                     of.trial->loops)
+                       : "Verdict of each method on this record",
+              {{"method", Table::Align::left}, {"flagged"}, {"score"}, {"CV"}, {"source"}});
   constexpr std::string_view kRates[] = {"false_alarm_healthy", "detected", "located", "source"};
   if (of.trial)
     table.columns.push_back({"threshold"});

@@ -30,14 +30,14 @@ void add_candidates(const RecordAssessment& of, Texts& sentences) {
         named.push_back(fmt::format("{} for {} (log10 p = {:.1f})", candidate, cv_name(of.study, cv),
                                     number_of_cv(said, "log10_p", cv)));
   if (!named.empty())
-    sentences.push_back(fmt::format("Signals that the model does not know and that drive its errors: {}.",
-                                    fmt::join(named, ", ")));
+    sentences.push_back(
+        fmt::format("Signals outside of the model that drive its errors: {}.", fmt::join(named, ", ")));
 }
 
 /// What the record tells of the channel that the verdict names, and which other one is worth a repair.
 void add_repair(const RecordAssessment& of, Texts& sentences) {
   if (!of.no_repair.empty())
-    sentences.push_back(fmt::format("What a repair would bring is not known: {}.", of.no_repair));
+    sentences.push_back(fmt::format("The gain of a repair is not known: {}.", of.no_repair));
   if (of.repair && !of.repair->repair.parameter)  // of one parameter the verdict has the size
     sentences.push_back(fmt::format("Identified again from this record, {} has {}.",
                                     channel_name(of.study, of.repair->repair.channel),
@@ -50,9 +50,8 @@ void add_repair(const RecordAssessment& of, Texts& sentences) {
   if (best != of.prospects.end() && &*best != of.named_prospect() &&
       best->probability_above(options.worth) > options.probability)
     sentences.push_back(
-        fmt::format("Of all repairs that worsen no CV, that of {} would bring most: it is expected to take "
-                    "away {:.0f} % of what "
-                    "the loop costs, more than {:g} % with a probability of {:.0f} %.",
+        fmt::format("Of all repairs that worsen no CV, that of {} would bring most: it is expected to save "
+                    "{:.0f} % of the cost of the loop, and more than {:g} % with a probability of {:.0f} %.",
                     channel_name(of.study, best->repair.channel), 100.0 * best->gain(), 100.0 * options.worth,
                     100.0 * best->probability_above(options.worth)));
 }
@@ -88,7 +87,8 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
     sentences.push_back(
         fmt::format("The same source was named in {} of them, in {} rightly.", counts.same, counts.right));
   else if (fails)
-    sentences.emplace_back("In none of them was this source named: how often that is right is not known.");
+    sentences.emplace_back(
+        "This source was named in none of them, so it is not known how often it is right.");
 }
 
 /// By what the controller that ran may differ.
@@ -104,7 +104,7 @@ std::string difference_sentence(const RecordAssessment& of) {
         fmt::join(names, ", "));
   }
   if (!check.is_closed_loop)
-    return "No MV answers the CVs: this looks like an open-loop test.";
+    return "No MV responds to the CVs: this looks like an open-loop test.";
   const Eigen::Index mv = check.worst_mv();
   constexpr double kSteadyPull = 1.0;  // standard deviations
   if (mv >= 0 && of.study.controller.has_targets() && std::abs(check.pull(mv)) > kSteadyPull)
@@ -158,10 +158,10 @@ std::vector<std::string> controller_sentences(const RecordAssessment& of) {
   const Eigen::Index mv = check.worst_mv();
   return {
       check.failure.empty()
-          ? fmt::format("On what was measured, the controller of the study would have moved {} otherwise "
-                        "(agreement {:.2f}, and 1 if it had run).",
+          ? fmt::format("With these measurements, the controller of the study would have moved {} "
+                        "differently (agreement {:.2f}; the controller that ran would have 1).",
                         mv_name(of.study, mv), check.agreement(mv))
-          : fmt::format("The controller of the study does not run on what was measured: {}.", check.failure),
+          : fmt::format("The controller of the study does not run on these measurements: {}.", check.failure),
       difference_sentence(of)};
 }
 

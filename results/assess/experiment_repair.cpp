@@ -131,7 +131,7 @@ std::vector<RepairFindings> repair_findings(std::span<const ExperimentRepair> re
 
 void require_repairable(const Campaign& campaign, const std::string& archive) {
   if (!campaign.basis.sensitivity.is_known)
-    throw InputError(archive, "a controller program that runs on the plant only (on_model is false)",
+    throw InputError(archive, "a controller program that cannot run on its model (on_model is false)",
                      "one that runs on its model: a repaired model is judged by the loops that it promises");
 }
 

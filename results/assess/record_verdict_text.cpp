@@ -242,9 +242,8 @@ class VerdictWriter {
       case ActionKind::column:
         return "Look at how the historian stamps and averages the columns, correct that, and assess again.";
       case ActionKind::controller:
-        return "Bring the controller of the study to what ran (setpoints, limits, costs, tuning), and assess "
-               "again; "
-               "leave the model as it is.";
+        return "Change the controller of the study to the one that ran (setpoints, limits, costs, tuning), "
+               "and assess again; leave the model as it is.";
       case ActionKind::limit:
         return "Look at tuning, setpoints, limits and the operating point of that time; leave the model as "
                "it is.";
@@ -276,8 +275,8 @@ class VerdictWriter {
           cv(verdict_.named_cv()));
     if (action.worsened.empty() && action.promise && !(action.promise->gain > 0.0))
       return fmt::format(
-          "Test {} with steps, and look for what else makes the loop dearer: by this record alone its "
-          "repair is expected to bring nothing ({}).",
+          "Test {} with steps, and look for other causes of the cost: by this record alone, its repair is "
+          "expected to gain nothing ({}).",
           channel, promise_text(*action.promise));
     if (action.worsened.empty())
       return fmt::format("Test {} with steps: the record does not tell how to correct it.", channel);

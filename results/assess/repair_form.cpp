@@ -107,16 +107,14 @@ std::string information_sentence(const Study& study, const Channel& channel, con
 
 Table prospects_table(const Study& study, const std::vector<RepairProspect>& prospects) {
   const double worth = study.assessment.of<AdequacyOptions>().worth;
-  Table table(
-      fmt::format(
-          "Channels by the part of the cost of the loop that their repair takes away, in %: expected, "
-          "and the probability that it is above {:g} %. A repair is proposed if it takes away cost and "
-          "worsens no CV by more than {:.0f} %.",
-          100.0 * worth, 100.0 * (kNoticeableChange - 1.0)),
-      {{"channel", Table::Align::left},
-       {"expected"},
-       {fmt::format("above {:g} %", 100.0 * worth)},
-       {"worsens", Table::Align::left}});
+  Table table(fmt::format("Channels by the share of the cost of the loop that their repair saves, in %: the "
+                          "expected share, and the probability that it is above {:g} %. A repair is proposed "
+                          "if it saves cost and worsens no CV by more than {:.0f} %.",
+                          100.0 * worth, 100.0 * (kNoticeableChange - 1.0)),
+              {{"channel", Table::Align::left},
+               {"expected"},
+               {fmt::format("above {:g} %", 100.0 * worth)},
+               {"worsens", Table::Align::left}});
   for (const RepairProspect& prospect : prospects) {
     const std::vector<std::string> worse = worsened_cvs(study, prospect);
     const std::string name = as_label(channel_name(study, prospect.repair.channel));

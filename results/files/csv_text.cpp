@@ -97,7 +97,7 @@ std::vector<std::string> CsvReader::fields_of(std::string_view line) const {
       }
       at = std::min(line.find(separator_, close), line.size());
       if (const std::string_view behind = without_blanks(line.substr(close, at - close)); !behind.empty())
-        throw InputError(place(), fmt::format("'{}' behind a field in quotes", cut_utf8(behind, kShownBytes)),
+        throw InputError(place(), fmt::format("'{}' after a quoted field", cut_utf8(behind, kShownBytes)),
                          "the separator or the end of the line, and \"\" for each \" in a field in quotes");
       field = without_blanks(field);
     } else {

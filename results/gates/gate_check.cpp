@@ -175,7 +175,7 @@ GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Camp
                 .seconds = campaign.info.seconds};
   // Without these a campaign could pass because the experiments that would have failed a gate are missing.
   run.results = {
-      judge_number("self_check", "1: the basis case is healthy; otherwise no number has a meaning",
+      judge_number("self_check", "1: the basis case is healthy; otherwise no number is meaningful",
                    campaign.basis.healthy ? 1.0 : 0.0, 1, 1.0, kInfinity),
       judge_number("experiments", "number of experiments", static_cast<double>(total.experiments),
                    total.experiments, static_cast<double>(file.minimum_experiments), kInfinity),

@@ -85,7 +85,7 @@ OptionKeys gate_keys(Gate& gate, const std::vector<Finding>& findings) {
           key::check(check_interval),
           key::whole("minimum_count", gate.minimum_count, 1, kMaxCount,
                      "fewer experiments (pairs, for `slope` and `r_squared`) make the gate inconclusive"),
-          key::text("reason", gate.reason, "why the limits stand where they do; printed with the outcome")};
+          key::text("reason", gate.reason, "reason for the limits; printed with the outcome")};
 }
 
 OptionKeys baseline_keys(BaselineLimits& limits, const std::filesystem::path& folder) {
@@ -124,31 +124,30 @@ OptionKeys gate_file_keys(GateFile& file, const std::vector<Finding>& findings,
     if (!document.has("baseline"))
       document.require("gate", "a list of tables, one or more");
   };
-  return {
-      key::choice("inconclusive", file.inconclusive, {"fail", "pass"},
-                  "whether an inconclusive gate fails the check"),
-      key::option("confidence", "number", "confidence of all intervals")
-          .otherwise("that of the study")
-          .allow("between 0 and 1")
-          .read([&file](const TomlTable& document, const std::string& key) {
-            file.confidence = read_number(document, key, NumberRule::inside(0, 1));
-          }),
-      key::whole("maximum_failed", file.maximum_failed, 0, kMaxCount,
-                 "number of experiments that may lack a result (infeasible ones do not count)"),
-      key::whole("minimum_experiments", file.minimum_experiments, 1, kMaxCount,
-                 "experiments that the campaign must have"),
-      key::number("minimum_answered", file.minimum_answered, NumberRule::share(),
-                  "share of the loops on which a method from outside was asked that it must have answered"),
-      key::list<Gate>(
-          "gate", kMaxGates, [&findings](Gate& gate) { return gate_keys(gate, findings); },
-          [&file](const TomlTable&, Gate& gate) { file.gates.push_back(std::move(gate)); }, "the gates")
-          .otherwise("required, unless there is a `[baseline]`")
-          .allow("one or more")
-          .after(require_gates),
-      key::option("baseline", "table", "an earlier run to compare with")
-          .otherwise("none")
-          .with("", below_baseline)
-          .read(read_baseline)};
+  return {key::choice("inconclusive", file.inconclusive, {"fail", "pass"},
+                      "whether an inconclusive gate fails the check"),
+          key::option("confidence", "number", "confidence of all intervals")
+              .otherwise("that of the study")
+              .allow("between 0 and 1")
+              .read([&file](const TomlTable& document, const std::string& key) {
+                file.confidence = read_number(document, key, NumberRule::inside(0, 1));
+              }),
+          key::whole("maximum_failed", file.maximum_failed, 0, kMaxCount,
+                     "number of experiments that may lack a result (infeasible ones do not count)"),
+          key::whole("minimum_experiments", file.minimum_experiments, 1, kMaxCount,
+                     "experiments that the campaign must have"),
+          key::number("minimum_answered", file.minimum_answered, NumberRule::share(),
+                      "share of its loops on which a method from outside must have answered"),
+          key::list<Gate>(
+              "gate", kMaxGates, [&findings](Gate& gate) { return gate_keys(gate, findings); },
+              [&file](const TomlTable&, Gate& gate) { file.gates.push_back(std::move(gate)); }, "the gates")
+              .otherwise("required, unless there is a `[baseline]`")
+              .allow("one or more")
+              .after(require_gates),
+          key::option("baseline", "table", "an earlier run to compare with")
+              .otherwise("none")
+              .with("", below_baseline)
+              .read(read_baseline)};
 }
 
 }  // namespace

@@ -196,10 +196,10 @@ class RecordReader {
       refuse_without_controller();
     if (share == 0.0)
       return;
-    record_.warnings.push_back(fmt::format(
-        "the controller is off in {} of the samples: they count nowhere, nor do those behind them until the "
-        "slowest channel has settled",
-        percent(share)));
+    record_.warnings.push_back(
+        fmt::format("the controller is off in {} of the samples: they do not count, nor do the samples after "
+                    "them until the slowest channel has settled",
+                    percent(share)));
     Eigen::Index from = 0;
     while (off(from))
       ++from;

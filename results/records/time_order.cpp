@@ -28,7 +28,7 @@ class StampSteps {
     if (stamps_.calendar && !stamps_.offsets && is_spring_forward(place))
       throw InputError(
           where(place), fmt::format("{} after {}, an hour too late at night", text(place), text(place - 1)),
-          "stamps that no clock is put forward in: export them in UTC (with Z, also where the hour is "
+          "stamps in which no clock is put forward: export them in UTC (with Z, also where the hour is "
           "missing in truth), or with their offset (2024-03-31T03:00:00+02:00); or say in data.time_zone "
           "which clock it is");
   }

@@ -209,7 +209,7 @@ class LocalTimes {
     if (!known)
       refuse_stamp(source_, row,
                    fmt::format("Z, an offset such as +01:00, or letters of one zone alone, such as CET; "
-                               "data.time_zone = \"Europe/Berlin\" says which zone '{}' is of",
+                               "data.time_zone = \"Europe/Berlin\" says to which zone '{}' belongs",
                                cut_utf8(letters, kShownBytes)));
     return *known;
   }

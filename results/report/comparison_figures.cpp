@@ -103,21 +103,19 @@ RocWords roc_words(FlagTruth truth) {
         "comparison_roc",
         "healthy loops flagged (%)",
         "loops with a fault flagged (%)",
-        "Each method with every threshold on its score; behind its area the numbers of loops with a fault "
-        "and "
-        "of healthy ones. The mark is its own verdict, which lies off the curve if the method flags by more "
-        "than one number.",
+        "Each method with every threshold on its score; after its area stand the numbers of loops with a "
+        "fault and of healthy loops. The mark is its own verdict, which lies off the curve if the method "
+        "flags by more than one number.",
         "Receiver operating characteristics of the scores of the methods, loops with a fault against healthy "
         "ones."};
-  return {
-      "comparison-roc-impact",
-      "comparison_roc_impact",
-      "loops without an impact flagged (%)",
-      "loops with an impact flagged (%)",
-      "The same with impact as the truth: only loops whose fault has an impact should be flagged. Behind the "
-      "area: loops with an impact, and without.",
-      "Receiver operating characteristics of the scores of the methods, loops whose fault has an impact "
-      "against healthy ones and those whose fault has none."};
+  return {"comparison-roc-impact",
+          "comparison_roc_impact",
+          "loops without an impact flagged (%)",
+          "loops with an impact flagged (%)",
+          "The same with impact as the truth: only loops whose fault has an impact should be flagged. After "
+          "the area: the numbers of loops with an impact and without.",
+          "Receiver operating characteristics of the scores of the methods, loops whose fault has an impact "
+          "against healthy ones and those whose fault has none."};
 }
 
 /// Where the method itself draws the line: what it flags of both kinds of loops.

@@ -137,7 +137,7 @@ std::string rates_answer(const ReportInput& input) {
         "The CV is right in {} of {} loops{}. ", share_words(located), located.total,
         source.total == 0 ? "" : fmt::format(", the source in {} of {}", share_words(source), source.total));
   if (compared > 0)
-    text += fmt::format("{} of {} numbers agree with what is reported.", agree, compared);
+    text += fmt::format("{} of {} numbers agree with the reported ones.", agree, compared);
   return text;
 }
 

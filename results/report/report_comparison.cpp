@@ -51,8 +51,8 @@ Section comparison_section(const ReportInput& input) {
   }
   section.answer = comparison_answer(summary);
   section.say(fmt::format(
-      "Every method has assessed the same {} of {} experiments, those that ran to their end. It saw of each "
-      "what a historian would have kept. Judge detection and false alarms together: a method that flags "
+      "Every method has assessed the same {} of {} experiments, those that ran to their end, and saw of each "
+      "only what a historian would have kept. Judge detection and false alarms together: a method that flags "
       "every loop detects every fault. A rate is missing if no loop counts for it.",
       summary.assessed, summary.experiments));
   Figure rates = comparison_rates_figure(campaign.study, summary.methods);

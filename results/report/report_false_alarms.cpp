@@ -98,7 +98,7 @@ Section false_alarm_section(const ReportInput& input) {
   figure.caption =
       "The Ivar farthest from 1 of each experiment: healthy ones by their number, bad tunings against the "
       "factor of the weight. Outside the band the chain sees a modelling error that does not exist. "
-      "Ivar_{basis} shows what the noise or the tuning really does to the variance of a CV.";
+      "Ivar_{basis} shows the true effect of the noise or the tuning on the variance of a CV.";
   figure.legend = {{"Ivar: no alarm", kQuiet},
                    {"Ivar: false alarm", kAlarm},
                    {"Ivar_{basis}", kCost},

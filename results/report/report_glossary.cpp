@@ -14,7 +14,7 @@ struct Term {
 
 constexpr Term kTerms[] = {
     {"cv", "CV, MV, MD", "controlled variable, manipulated variable, measured disturbance", false},
-    {"mpm", "MPM", "model-plant mismatch: the plant is not what the model of the controller says", false},
+    {"mpm", "MPM", "model-plant mismatch: the plant differs from the model of the controller", false},
     {"ud", "UD", "unmeasured disturbance: something that the controller does not measure moves a CV", false},
     {"y0", "y<sub>0</sub>",
      "nominal output: the CV as it would have been with a perfect model and no disturbance, computed from "
@@ -32,11 +32,11 @@ constexpr Term kTerms[] = {
     {"located", "located",
      "the CV whose Ivar<sub>diag</sub> is farthest from 1, which is taken to be the one with the fault"},
     {"impm", "I<sub>MPM</sub>",
-     "how much the error of the model follows the MVs: above the threshold the source is "
-     "called a mismatch, below it a disturbance"},
+     "how closely the error of the model follows the MVs: above the threshold the source is called a "
+     "mismatch, below it a disturbance"},
     {"recognised", "recognised", "the source that is named, MPM or UD, is the true one"},
     {"interval", "interval",
-     "where the true share or number lies at the stated confidence, given the number of loops", false},
+     "range of the true share or number at the stated confidence, given the number of loops", false},
 };
 
 }  // namespace

@@ -155,8 +155,9 @@ Section variance_section(const ReportInput& input) {
   Figure figure;
   figure.name = "ivar";
   figure.caption = fmt::format(
-      "Ivar_{{basis}} (what the fault really does to the variance) against Ivar (what the loop data say), "
-      "one point per CV and experiment; thesis figures 6.18 and 6.22. Grey band: no impact, Ivar from {:g} "
+      "Ivar_{{basis}} (the true effect of the fault on the variance) against Ivar (its estimate from the "
+      "loop data), one point per CV and experiment; thesis figures 6.18 and 6.22. Grey band: no impact, Ivar "
+      "from {:g} "
       "to {:g}. The regression is a straight line, bent by the logarithmic axes.",
       options.impact_lower, options.impact_upper);
   figure.legend = {{"affected CV", affected_pen(NonlinearCause::none)}};

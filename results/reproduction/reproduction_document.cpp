@@ -108,7 +108,7 @@ std::string table_words(const ThesisTable& table) {
 }
 
 Table agreement_table(const std::vector<ReproducedTable>& tables) {
-  Table table("Verdicts of the thesis that ours agree with", {{"", Table::Align::left}, {"agree"}, {"of"}});
+  Table table("Verdicts of the thesis with which ours agree", {{"", Table::Align::left}, {"agree"}, {"of"}});
   Agreement total;
   for (const ReproducedTable& each : tables) {
     total.add(each.agreement());
@@ -119,7 +119,7 @@ Table agreement_table(const std::vector<ReproducedTable>& tables) {
 }
 
 Table agreement_table(const std::vector<SeededTable>& tables) {
-  Table table("Verdicts of the thesis that ours agree with, over the seeds",
+  Table table("Verdicts of the thesis with which ours agree, over the seeds",
               {{"", Table::Align::left}, {"mean"}, {"fewest"}, {"most"}, {"of"}});
   double agreeing = 0.0;
   int judged = 0;

@@ -44,8 +44,7 @@ Table confusions_table(const Leaderboard& board, std::size_t method, const std::
   for (const AnsweredSource answer : answers)
     heads.push_back({as_label(answer_head(answer))});
   heads.push_back({"loops"});
-  Table table(fmt::format("{}: loops by what is true (rows) and by what it answers (columns)",
-                          code(board.methods[method])),
+  Table table(fmt::format("{}: loops by truth (rows) and by answer (columns)", code(board.methods[method])),
               std::move(heads));
   for (const ToldSource truth : truths) {
     std::vector<Cell> cells{as_label(std::string(to_string(truth)))};
@@ -73,8 +72,9 @@ Section confusions_section(const Leaderboard& board) {
   if (truths.empty())
     return section;
   section.say(
-      "Loops that a method flags at its own threshold, and the source that it names. Of a fault around the "
-      "model (a sensor, a valve, or another) the right source of the rates is any of these, and none named.");
+      "Loops that a method flags at its own threshold, and the source that it names. For a fault outside of "
+      "the model (a sensor, a valve, or another), the rates count any of these sources, or none named, as "
+      "right.");
   for (std::size_t method = 0; method < board.methods.size(); ++method)
     if (board.overall[method].confusions.total() > 0)
       section.add(confusions_table(board, method, truths, answers));

@@ -55,13 +55,13 @@ std::vector<std::string_view> information_rates() {
 }
 
 Section information_section(const Leaderboard& board) {
-  Section section{"information", "What the correction by the benchmark brings"};
+  Section section{"information", "Effect of the correction by the benchmark"};
   const std::vector<InformationPair> pairs = information_pairs(board);
   if (pairs.empty())
     return section;
   section.say(
-      "y_sim as the nominal model has it, or corrected by the errors that the benchmark shows: what a method "
-      "is told is one factor, and which method it is another.");
+      "y_sim of the nominal model, or corrected by the errors that the benchmark shows: the information that "
+      "a method gets is one factor, and the method itself is another.");
   std::vector<Table::Column> heads{{"Method", Table::Align::left}};
   for (const std::string_view name : information_rates()) {
     const RateRow& row = row_of(rate_rows(), name);

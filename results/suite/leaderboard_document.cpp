@@ -103,15 +103,14 @@ void add_legend(Section& section, const Leaderboard& board) {
       "~ It gives verdicts on fewer than {:g} % of the loops: not on the same loops as the others.",
       100 * kFewestAnswers));
   section.say(fmt::format(
-      "Passed is what is done with verdicts on {0:g} % of the loops and false alarms on at most "
-      "{1:g} % of the healthy ones: D, {2:g} % of the faults with an impact flagged; L, in {2:g} % "
-      "of the flagged loops the affected CV named; S, in {2:g} % of all loops with a fault the "
-      "right source named.",
+      "To pass, a method needs verdicts on {0:g} % of the loops and false alarms on at most {1:g} % of the "
+      "healthy ones, and for D, {2:g} % of the faults with an impact flagged; for L, the affected CV named "
+      "in {2:g} % of the flagged loops; for S, the right source named in {2:g} % of all loops with a fault.",
       100 * kFewestAnswers, 100 * kPassingFalseAlarms, 100 * kPassingShare));
   if (has_reference(board))
     section.say(
-        fmt::format("The reference is the method {}, which knows what the study draws. It is shown in the "
-                    "families that draw exactly what it knows of; above 100 % of it chance was kinder.",
+        fmt::format("The reference is the method {}, which knows the distributions of the study. It is shown "
+                    "in the families that draw only what it knows; a method above 100 % of it was lucky.",
                     code(kReferenceMethod)));
   section.say(whose_intervals(board.in_worlds()));
 }

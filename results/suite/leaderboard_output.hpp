@@ -64,7 +64,7 @@ const char* part_mark(const PooledScores& scores);
 /// The rates that the correction by the benchmark may change.
 std::vector<std::string_view> information_rates();
 
-/// What the correction by the benchmark brings to each method that the board has with and without it, and
+/// Effect of the correction by the benchmark to each method that the board has with and without it, and
 /// what the choice of the method brings; no content without such a method.
 Section information_section(const Leaderboard& board);
 

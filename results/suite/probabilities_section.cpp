@@ -81,21 +81,19 @@ Panel reliability_panel(const Leaderboard& board, std::size_t method) {
                                     100 * right.interval.upper, bin.right, bin.count)});
     }
   panel.upright_whiskers(points, kStated);
-  return panel.finish(
-      fmt::format("Reliability of {}: a point a bin of a tenth, how often the likeliest source is "
-                  "the truth against the probability stated for it.",
-                  board.methods[method]),
-      220.0);
+  return panel.finish(fmt::format("Reliability of {}: how often the likeliest source is the truth against "
+                                  "the probability stated for it, one point for each bin of a tenth.",
+                                  board.methods[method]),
+                      220.0);
 }
 
 Figure reliability_figure(const Leaderboard& board) {
   Figure figure;
   figure.name = "reliability";
   figure.caption = fmt::format(
-      "Reliability: how often the source that a method states to be the likeliest is the truth, by its "
-      "stated "
+      "Reliability: how often the source that a method states as the likeliest is the truth, by its stated "
       "probability, in bins of a tenth, with Wilson's {:g} % intervals, as if loops were independent. On the "
-      "dashed line a method is right as often as it says; below it is too sure.",
+      "dashed line a method is right as often as it says; below the line it is overconfident.",
       100 * board.confidence);
   figure.legend = {{"bin of a tenth", kStated}, {"as often as stated", kRightAsStated}};
   for (const std::size_t method : stating_methods(board))
@@ -114,8 +112,8 @@ Table bins_table(const Leaderboard& board) {
   for (const std::size_t bin : used)
     heads.push_back({fmt::format("{} to {} %", 10 * bin, 10 * (bin + 1))});
   Table table(
-      "How often the likeliest source is the truth, by its stated probability: % with interval, of so "
-      "many loops",
+      "How often the likeliest source is the truth, by its stated probability: % with interval, and the "
+      "number of loops",
       std::move(heads));
   for (const std::size_t method : stating_methods(board)) {
     std::vector<Cell> cells{row_name(board, method)};
@@ -155,12 +153,11 @@ Section probabilities_section(const Leaderboard& board) {
   if (!frequencies || stating_methods(board).empty())
     return section;
   section.add(scores_table(board));
-  section.say(fmt::format(
-      "Low scores are good. The frequencies of the suite are those of the sources on this board ({}), stated "
-      "of "
-      "every loop by who sees no record; skill: 1 less the score over that of these frequencies on the same "
-      "loops.",
-      frequencies_text(*frequencies)));
+  section.say(
+      fmt::format("Low scores are good. The frequencies of the suite are a forecast without a record: it "
+                  "states the shares of the sources on this board ({}) for every loop. Skill: 1 less the "
+                  "score over the score of this forecast on the same loops.",
+                  frequencies_text(*frequencies)));
   section.add(reliability_figure(board));
   return section;
 }

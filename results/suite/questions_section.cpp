@@ -62,8 +62,8 @@ Section questions_section(const Leaderboard& board) {
   }
   section.add(std::move(table));
   section.say(
-      "A method that names mismatches alone, or disturbances alone, has no rank among those that tell the "
-      "source: half of the loops are outside of its question.");
+      "A method that names only mismatches, or only disturbances, has no rank among those that name the "
+      "source, because half of the loops are outside of its question.");
   if (std::any_of(board.overall.begin(), board.overall.end(),
                   [](const PooledScores& scores) { return scores.answers_in_part(); }))
     section.say(fmt::format("~ It gives verdicts on fewer than {:g} % of the loops.", 100 * kFewestAnswers));

@@ -54,9 +54,10 @@ const char* asked_of(const Standing& standing) {
 
 Table duels_table(const Leaderboard& board, const Standing& standing) {
   Table table(
-      fmt::format("{} against the others on the same loops, {}, at 5 % false alarms: its share minus "
-                  "theirs, in %, with {:g} % interval; who beats whom is corrected for their number",
-                  as_label(board.methods[standing.method]), asked_of(standing), 100 * board.confidence),
+      fmt::format(
+          "{} against the others on the same loops, {}, at 5 % false alarms: its share minus theirs, in %, "
+          "with {:g} % interval; the decision who beats whom is corrected for the number of methods",
+          as_label(board.methods[standing.method]), asked_of(standing), 100 * board.confidence),
       {{"Method", Table::Align::left}, {"Difference"}, {"Loops"}, {"", Table::Align::left}});
   for (const BoardDuel& duel : standing.duels)
     table.row({as_label(board.methods[duel.other]),

@@ -288,7 +288,7 @@ Table scenario_table(const Campaign& campaign, const std::string& file) {
   const DiagnosisOptions& options = study.diagnosis;
   Table table(
       fmt::format(
-          "Named scenarios, and the verdict on each CV against what the study says. Flagged: Ivar_{{diag}} "
+          "Named scenarios, and the verdict on each CV compared with the study. Flagged: Ivar_{{diag}} "
           "outside {:g} to {:g}; source by I_{{MPM}} above or below {:g}.",
           options.impact_lower, options.impact_upper, mpm_threshold(study)),
       {{"scenario", Table::Align::left},

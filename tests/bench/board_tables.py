@@ -158,7 +158,7 @@ def confusions(board, method):
 
 
 def information(board):
-    """What the correction by the benchmark brings to each method that is there in both ways, on the same loops."""
+    """Effect of the correction by the benchmark to each method that is there in both ways, on the same loops."""
     rates = list(dict.fromkeys(each["rate"] for each in board["information"]))
     found = {(each["method"], each["rate"]): each for each in board["information"]}
 

@@ -182,7 +182,7 @@ plant_parameter = [{name = "gain", factor = {constant = 1.25}}]
             assert not (one["trajectories/y"][0] == nominal["trajectories/y"][0]).all()
 
         # What it does wrong costs one experiment, and says so.
-        wrong = {1: "out of ideas", 2: "dry", 3: "ended by signal 11", 4: "no JSON object", 5: None, 6: "in time"}
+        wrong = {1: "out of ideas", 2: "dry", 3: "ended by signal 11", 4: "not a JSON object", 5: None, 6: "in time"}
         scenarios = "".join(f"""[[scenario]]
 name = "wrong{how}"
 affected = ["y"]

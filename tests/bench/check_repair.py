@@ -33,7 +33,7 @@ def main(program):
         for each in truth["candidates"]:
             assert each["proposed"] == (each["gain"] > 0 and max(each["variance_ratio"]) <= 1.05), each
             assert bool(each["worsens"]) == (max(each["variance_ratio"]) > 1.05) and 0 <= each["p_worth"] <= 1, each
-        assert "y2/u1" in text[text.index("Channels by the part"):], text
+        assert "y2/u1" in text[text.index("Channels by the share"):], text
 
         # A size that the verdict names is the one that goes into the model.
         named = pathlib.Path(name) / "named.h5"

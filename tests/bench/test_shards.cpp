@@ -340,7 +340,7 @@ TEST_CASE("shard store: a shard that its run has packed meanwhile is gone, not d
   CHECK_THROWS_AS(late.take_stock(small, [&](const std::string& text) { warnings.push_back(text); }),
                   ShardGone);
   CHECK(warnings.empty());
-  CHECK_THROWS_WITH(keys_in(seen), Contains("the file has gone") && Contains("the same command again"));
+  CHECK_THROWS_WITH(keys_in(seen), Contains("the file is gone") && Contains("the same command again"));
   ShardStore again = loops().in_memory();
   again.take_stock(shards_in(folder / "s"), {});
   CHECK(missing_in(again) == Keys{0, 2});

@@ -215,7 +215,7 @@ class ArxOe final : public AssessmentMethod {
 AssessmentMethodInfo arx_oe_method() {
   return {{.name = "arx-oe",
            .title = "after Lu et al. (2020), reconstructed",
-           .verdict = "the plant or the noise of some CV is not what it was in the benchmark",
+           .verdict = "the plant or the noise of some CV differs from the benchmark",
            .requirements = {.benchmark = true, .moving_mvs = true},
            .locates_cvs = true,
            .tells_sources = true,

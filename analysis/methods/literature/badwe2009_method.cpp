@@ -71,7 +71,7 @@ class Badwe2009 final : public AssessmentMethod {
           fmt::format("its models and lags need {} samples, and the record has {}", needed, loop.samples()));
     const Badwe2009Result result = assess_badwe2009(record, options_);
     if (result.status == Badwe2009Status::no_mv)
-      return Assessment::failed("no MV is left: all are saturated, stand still or do as the others do");
+      return Assessment::failed("no MV is left: all are saturated, stand still or follow other MVs");
     return assessment_of(result, loop.y.rows(), loop.u.rows());
   }
 

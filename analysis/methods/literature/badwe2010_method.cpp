@@ -26,16 +26,16 @@ struct Badwe2010Options {
 
 OptionKeys keys(Badwe2010Options& options) {
   return {key::whole("smallest_order", options.smallest_order, 1, 100,
-                     "smallest order of the output-error models that is tried (3.3.2)"),
+                     "smallest order of the output-error models (3.3.2)"),
           key::whole_from("largest_order", options.largest_order, options.smallest_order, 100,
                           "largest order n (3.3.2). A record is assessed only if it has more samples than "
                           "the 2n + 1 coefficients of each CV with a setpoint")
               .allow("`smallest_order` to 100"),
           key::choice(
               "criterion", options.criterion, {"record-fit", "validation-fit", "bic"},
-              "how the order is chosen: the largest %Fit (3.32) over the record, which is the \"best model "
-              "fit\" that the thesis reports; the largest over the last 30 % by models of the first 70 %; "
-              "the smallest BIC"),
+              "how the order is chosen. `\"record-fit\"`: by the largest %Fit (3.32) over the record, which "
+              "is the \"best model fit\" that the thesis reports. `\"validation-fit\"`: by the largest %Fit "
+              "over the last 30 % of models of the first 70 %. `\"bic\"`: by the smallest BIC"),
           key::whole("max_iterations", options.max_iterations, 1, 100'000,
                      "iterations of the search for each model; 20 is the default of `oe` in Matlab, with "
                      "which the thesis worked")};
@@ -138,8 +138,8 @@ AssessmentMethodInfo badwe2010_method() {
   return {
       {.name = "badwe2010",
        .title = "Badwe et al. (2010)",
-       .verdict = "the mismatch has an impact: Ivar of some CV against its designed output lies outside the "
-                  "band of impact",
+       .verdict = "the mismatch has an impact: Ivar of some CV, relative to its designed output, lies "
+                  "outside the band of impact",
        .requirements = {.setpoints = true, .moving_setpoints = true},
        .locates_cvs = true,
        .names_channels = false,

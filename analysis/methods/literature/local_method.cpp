@@ -151,7 +151,8 @@ AssessmentMethodInfo local_method() {
   return {
       {.name = "local",
        .title = "after Jiang et al. (2009), reconstructed",
-       .verdict = "the gradient of the prediction error by the parameters of the model has a mean",
+       .verdict = "the gradient of the prediction error with respect to the parameters of the model has a "
+                  "nonzero mean",
        .requirements = {.moving_mvs = true},
        .locates_cvs = true,
        .names_channels = true,

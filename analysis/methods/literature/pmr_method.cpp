@@ -175,7 +175,8 @@ AssessmentMethodInfo pmr_method() {
   return {
       {.name = "pmr",
        .title = "after Selvanathan and Tangirala (2010), reconstructed",
-       .verdict = "the plant-model ratio of some CV, from what signals from outside do to the loop, is not 1",
+       .verdict =
+           "the plant-model ratio of some CV, estimated from signals from outside of the loop, is not 1",
        .requirements = {.moving_mvs = true},
        .locates_cvs = true,
        .names_channels = true,

@@ -23,17 +23,16 @@ struct YuQinOptions {
 };
 
 OptionKeys keys(YuQinOptions& options) {
-  return {
-      key::number("confidence", options.comparison.confidence, NumberRule::inside(0, 1),
-                  "confidence of the limits of eigenvalues and angles (2.4.1)"),
-      key::whole("largest_lag", options.comparison.largest_lag, 0, 1'000'000,
-                 "largest lag of the sum over squared autocorrelations (2.9), samples; 0: all lags, because "
-                 "the thesis prints the sum so. It overstates the sum, so that changes are called "
-                 "significant too rarely (`docs/methods.md`)"),
-      key::whole(
-          "first_sample", options.first_sample, 0, 1'000'000,
-          "sample at which the compared periods begin. 0: the whole record, as for every other method. A "
-          "loop whose plant is not its model starts with a transient, which the variances else are made of")};
+  return {key::number("confidence", options.comparison.confidence, NumberRule::inside(0, 1),
+                      "confidence of the limits of eigenvalues and angles (2.4.1)"),
+          key::whole("largest_lag", options.comparison.largest_lag, 0, 1'000'000,
+                     "largest lag of the sum over squared autocorrelations (2.9), samples; 0: all lags, "
+                     "because the thesis prints the sum in this form. This overstates the sum, so changes "
+                     "are called significant too rarely (`docs/methods.md`)"),
+          key::whole("first_sample", options.first_sample, 0, 1'000'000,
+                     "sample at which the compared periods begin. 0: the whole record, as for every other "
+                     "method. A loop whose plant differs from its model starts with a transient, which "
+                     "otherwise dominates the variances")};
 }
 
 /// Control errors of `cvs`, one row each, from sample `first` on.

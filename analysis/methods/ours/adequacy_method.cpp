@@ -90,22 +90,22 @@ class Adequacy final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo adequacy_method() {
-  return {{.name = "adequacy",
-           .title = "is the model adequate for this controller?",
-           .verdict =
-               "the repair of some channel is probably worth more than a stated part of what the loop costs",
-           .requirements = {.moving_mvs = true, .nominal_loop = true, .complete_record = false},
-           .locates_cvs = true,
-           .names_channels = true,
-           .tells_sources = true,
-           .information = ModelInformation::unused,
-           .numbers = {{"gain", NumberScope::channel,
-                        "expected gain of the repair of this channel, as a share of the cost of the loop; "
-                        "none: not simulated"},
-                       {"p_worth", NumberScope::channel, "probability that this gain is above `worth`"}}},
-          {},
-          [](const AssessmentContext& context) { return std::make_unique<Adequacy>(context); },
-          option_table<AdequacyOptions>(keys, "options of the test whether the model is adequate")};
+  return {
+      {.name = "adequacy",
+       .title = "is the model adequate for this controller?",
+       .verdict = "the repair of some channel probably saves more than a set share of the cost of the loop",
+       .requirements = {.moving_mvs = true, .nominal_loop = true, .complete_record = false},
+       .locates_cvs = true,
+       .names_channels = true,
+       .tells_sources = true,
+       .information = ModelInformation::unused,
+       .numbers = {{"gain", NumberScope::channel,
+                    "expected gain of the repair of this channel, as a share of the cost of the loop; "
+                    "none: not simulated"},
+                   {"p_worth", NumberScope::channel, "probability that this gain is above `worth`"}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<Adequacy>(context); },
+      option_table<AdequacyOptions>(keys, "options of the test whether the model is adequate")};
 }
 
 }  // namespace mpm

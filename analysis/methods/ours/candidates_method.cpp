@@ -35,7 +35,7 @@ class Candidates final : public AssessmentMethod {
 
   Assessment assess(const AssessedLoop& loop) override {
     if (loop.candidates.rows() == 0)
-      return Assessment::not_applicable("no signal is logged that the model does not know");
+      return Assessment::not_applicable("no signal outside of the model is logged");
     const std::vector<Eigen::MatrixXd> filtered =
         filtered_in_window(loop, loop.from_start().candidates, options_);
     const Eigen::MatrixXd e = model_errors(loop);
@@ -89,25 +89,25 @@ class Candidates final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo candidates_method() {
-  return {{.name = "candidates",
-           .title = "inputs that the model lacks, among logged signals",
-           .verdict = "a logged signal that the model does not know helps to predict the simulation error of "
-                      "some CV",
-           .requirements = {.complete_record = false},
-           .locates_cvs = true,
-           .names_channels = false,
-           .tells_sources = true,
-           .names_candidates = true,
-           .information = ModelInformation::shown,
-           .numbers =
-               {{"candidate", NumberScope::cv, "position of the logged signal with the smallest p-value"},
-                {"log10_p", NumberScope::cv,
-                 "log10 p of the hypothesis that this signal does not help to predict the error of the CV"}}},
-          {},
-          [](const AssessmentContext& context) { return std::make_unique<Candidates>(context); },
-          option_table<CandidatesOptions>(
-              keys, "options of the test of the simulation errors against further logged signals"),
-          [](const MethodOptions& options) { return options.of<CandidatesOptions>().regression.alpha; }};
+  return {
+      {.name = "candidates",
+       .title = "inputs that the model lacks, among logged signals",
+       .verdict = "a logged signal that is not in the model helps to predict the simulation error of some CV",
+       .requirements = {.complete_record = false},
+       .locates_cvs = true,
+       .names_channels = false,
+       .tells_sources = true,
+       .names_candidates = true,
+       .information = ModelInformation::shown,
+       .numbers =
+           {{"candidate", NumberScope::cv, "position of the logged signal with the smallest p-value"},
+            {"log10_p", NumberScope::cv,
+             "log10 p of the hypothesis that this signal does not help to predict the error of the CV"}}},
+      {},
+      [](const AssessmentContext& context) { return std::make_unique<Candidates>(context); },
+      option_table<CandidatesOptions>(
+          keys, "options of the test of the simulation errors against further logged signals"),
+      [](const MethodOptions& options) { return options.of<CandidatesOptions>().regression.alpha; }};
 }
 
 }  // namespace mpm

@@ -9,7 +9,7 @@ namespace mpm {
 AssessmentMethodInfo ceiling_method() {
   return {{.name = "ceiling",
            .title = "likelihood that knows the study",
-           .verdict = "a fault is more probable than none, given the record and what the study draws",
+           .verdict = "a fault is more probable than none, given the record and the priors of the study",
            .requirements = {.benchmark = true, .complete_record = false},
            .locates_cvs = true,
            .names_channels = true,

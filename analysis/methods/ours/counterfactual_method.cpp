@@ -43,21 +43,20 @@ class Counterfactual final : public AssessmentMethod {
 }  // namespace
 
 AssessmentMethodInfo counterfactual_method() {
-  return {
-      {.name = "counterfactual",
-       .title = "counterfactual nominal output",
-       .verdict = "a modelling error has an impact: Ivar of some CV against the simulated nominal loop lies "
-                  "outside the band of impact",
-       .requirements = {.nominal_loop = true, .complete_record = false},
-       .locates_cvs = true,
-       .information = ModelInformation::learnt,
-       .numbers = {{"ivar", NumberScope::cv,
-                    "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise", "1",
-                    NumberFinding::regression},
-                   {"ivar_diag", NumberScope::cv, "var y / (var y0_diag + v), of flagged loops"}}},
-      {},
-      [](const AssessmentContext& context) { return std::make_unique<Counterfactual>(context); },
-      option_table<CounterfactualOptions>(keys, "options of the simulated nominal loop")};
+  return {{.name = "counterfactual",
+           .title = "counterfactual nominal output",
+           .verdict = "a modelling error has an impact: Ivar of some CV, relative to the simulated nominal "
+                      "loop, lies outside the band of impact",
+           .requirements = {.nominal_loop = true, .complete_record = false},
+           .locates_cvs = true,
+           .information = ModelInformation::learnt,
+           .numbers = {{"ivar", NumberScope::cv,
+                        "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise", "1",
+                        NumberFinding::regression},
+                       {"ivar_diag", NumberScope::cv, "var y / (var y0_diag + v), of flagged loops"}}},
+          {},
+          [](const AssessmentContext& context) { return std::make_unique<Counterfactual>(context); },
+          option_table<CounterfactualOptions>(keys, "options of the simulated nominal loop")};
 }
 
 }  // namespace mpm

@@ -236,11 +236,11 @@ TEST_CASE("a value out of all proportion is named, in the loop and in the benchm
   const Assessment of_loop =
       Assessor(assessment_method("likelihood"), setting.context(setting.benchmark())).assess(loop);
   CHECK(of_loop.status == AssessmentStatus::failed);
-  CHECK(of_loop.reason == "the loop is out of all proportion: y2 of -1e+160 at sample 7");
+  CHECK(of_loop.reason == "the loop has implausible values: y2 of -1e+160 at sample 7");
   const AssessmentContext context = setting.context(loop);
   const Assessment of_benchmark = Assessor(assessment_method("sse"), context).assess(setting.loop);
   CHECK(of_benchmark.status == AssessmentStatus::failed);
-  CHECK(of_benchmark.reason == "the benchmark is out of all proportion: y2 of -1e+160 at sample 7");
+  CHECK(of_benchmark.reason == "the benchmark has implausible values: y2 of -1e+160 at sample 7");
 }
 
 /// Of a benchmark that shows no errors of the model.

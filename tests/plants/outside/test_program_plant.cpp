@@ -77,9 +77,9 @@ TEST_CASE("a program that answers wrongly fails its loop, and says how", "[progr
   CHECK_THAT(failure(1), Contains("out of ideas"));
   CHECK_THAT(failure(2), Contains("it says: \"dry\""));
   CHECK_THAT(failure(3), Contains("without \"y\" of 1 numbers: {\"y\":[1.0,2.0]}"));
-  CHECK_THAT(failure(4), Contains("no JSON object: [1.0]"));
+  CHECK_THAT(failure(4), Contains("not a JSON object: [1.0]"));
   CHECK_THAT(failure(5), Contains("without \"y\" of 1 numbers"));
-  CHECK_THAT(failure(6), Contains("no JSON object: never mind"));
+  CHECK_THAT(failure(6), Contains("not a JSON object: never mind"));
   CHECK_THAT(failure(0, {"mpmbench-no-such-program"}), Contains("mpmbench-no-such-program"));
 }
 

@@ -150,7 +150,7 @@ TEST_CASE("a row without the controller is one of which nothing was recorded", "
       CHECK_FALSE(record.has_mv_off(0, k));
     }
     CHECK(std::any_of(record.warnings.begin(), record.warnings.end(), [](const std::string& warning) {
-      return warning.find("the controller is off in 33.3 % of the samples: they count nowhere") == 0;
+      return warning.find("the controller is off in 33.3 % of the samples: they do not count") == 0;
     }));
   }
   CHECK(read_plant_record(study_with("mode = {hot = 'H', cold = 'C'}\nmost_missing = 0.5"), by_modes, "r.csv")

@@ -114,7 +114,7 @@ TEST_CASE("candidates: does not apply where no such signal is logged") {
   const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
   const Assessment none = Assessor(assessment_method("candidates"), context).assess(*context.benchmark);
   CHECK(none.status == AssessmentStatus::not_applicable);
-  CHECK(none.reason == "no signal is logged that the model does not know");
+  CHECK(none.reason == "no signal outside of the model is logged");
 }
 
 }  // namespace mpm
