@@ -32,7 +32,7 @@ OptionKeys heading_keys(Study& study) {
 /// The whole study file. `folder` is that of the file.
 OptionKeys study_keys(Study& study, const std::filesystem::path& folder) {
   OptionKeys keys{key::table(
-                      "study", [&study] { return heading_keys(study); }, "what the study is called")
+                      "study", [&study] { return heading_keys(study); }, "name of the study")
                       .required(),
                   plant_key(study, folder),
                   controller_key(study),

@@ -206,7 +206,7 @@ OptionKey world_key(Study& study) {
              "world", "table",
              "worlds in which every model is a little wrong; controller and methods know the model and the "
              "benchmark of their world")
-      .otherwise("none: the model is exact but for the fault")
+      .otherwise("none: the model is exact except for the fault")
       .with("", below)
       .read(read);
 }

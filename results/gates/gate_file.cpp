@@ -135,7 +135,7 @@ OptionKeys gate_file_keys(GateFile& file, const std::vector<Finding>& findings,
           key::whole("maximum_failed", file.maximum_failed, 0, kMaxCount,
                      "number of experiments that may lack a result (infeasible ones do not count)"),
           key::whole("minimum_experiments", file.minimum_experiments, 1, kMaxCount,
-                     "experiments that the campaign must have"),
+                     "experiments that the run must have"),
           key::number("minimum_answered", file.minimum_answered, NumberRule::share(),
                       "share of its loops on which a method from outside must have answered"),
           key::list<Gate>(
