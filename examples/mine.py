@@ -12,7 +12,7 @@ import numpy
 
 
 def describe(options):
-    """What the method needs and what it tells."""
+    """What the method needs and what it answers."""
     return {"title": "simulation errors in Python",
             "verdict": "the mean squared simulation error of some CV is above that of the benchmark",
             "needs": ["benchmark"],

@@ -1,4 +1,4 @@
-"""An archive of mpmbench, and what is in it."""
+"""An archive of mpmbench, and its contents."""
 
 import functools
 import html
@@ -46,7 +46,7 @@ class Archive:
 
     @functools.cached_property
     def attributes(self):
-        """Those of the root: study, seed, command, versions."""
+        """Attributes of the root: study, seed, command, versions."""
         return self.group().attrs
 
     def group(self, name=None):
@@ -84,7 +84,7 @@ class Archive:
 
     @functools.cached_property
     def context(self):
-        """What a method may know besides the loop: model, controller, benchmark (docs/bring_your_own.md)."""
+        """The knowledge of a method besides the loop: model, controller, benchmark (docs/bring_your_own.md)."""
         found = []
 
         @method
@@ -127,7 +127,7 @@ class Archive:
         return {name: table[found].to_numpy(float).T for name, found in columns.items() if found}
 
     def truth(self, index):
-        """What is true of an experiment: kind of fault, channel, parameter, size, impact."""
+        """The truth about an experiment: kind of fault, channel, parameter, size, impact."""
         row = self.experiments.sel(experiment=index)
         return {name: row[name].item() for name in row.data_vars if not row[name].dims}
 
@@ -144,12 +144,12 @@ class Archive:
             return Comparison(said, Archive(output), [each.name for each in functions], broker.seconds)
 
     def repair(self, index, **options):
-        """The channel that a method names in an experiment, corrected, and what the repaired controller brings."""
+        """The correction of the channel that a method names in an experiment, and the gain of the repair."""
         return Repair(run_program(["repair", self.path, "--index", index, "--json", *words.options(options)], quiet=True),
                       self.context)
 
     def summary(self):
-        """What the study found, as a text."""
+        """The results of the study, as a text."""
         return run_program(["summary", self.path], quiet=True)
 
     def report(self, page=None):
@@ -181,7 +181,7 @@ class Archive:
 
 
 def worded(data):
-    """The Dataset with words in the place of flags and positions; `no` and `yes` become truth values."""
+    """The Dataset with words instead of flags and positions; `no` and `yes` become truth values."""
     import numpy
     for name in list(data.data_vars):
         flags, meanings = data[name].attrs.get("flag_values"), data[name].attrs.get("flag_meanings")

@@ -1,4 +1,4 @@
-"""What tells two functions apart: a digest of the code, and of what it uses."""
+"""A digest of the code of a function and of what the function uses, to tell two functions apart."""
 
 import hashlib
 import pickle

@@ -43,7 +43,7 @@ def method(function=None, *, needs=(), answers=(), numbers=None, name=None, titl
 
 
 class Method:
-    """A function of a loop with what a method says of itself; called, it is the function."""
+    """A function of a loop with the description of a method; calling it calls the function."""
 
     def __init__(self, function, *, needs, answers, numbers, name, title, verdict, learn, threshold_option=None, options=None):
         functools.update_wrapper(self, function)

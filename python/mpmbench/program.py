@@ -1,4 +1,4 @@
-"""The program mpmbench: where it is, how it is run, and what goes wrong."""
+"""The program mpmbench: where it is, how it is run, and its errors."""
 
 import atexit
 import os
@@ -18,7 +18,7 @@ READ_SIZE = 1 << 16
 
 
 class Error(RuntimeError):
-    """The program ended without a result; the text is its message, `code` its exit code."""
+    """The program ended without a result. The text is its message, `code` is its exit code."""
 
     def __init__(self, message, code):
         super().__init__(message)
@@ -34,7 +34,7 @@ class Unfinished(Error):
 
 
 class ProgramWarning(UserWarning):
-    """What the program warns of."""
+    """A warning of the program."""
 
 
 def program():
@@ -140,7 +140,7 @@ def talk(process, watch, text, broker):
 
 
 def stop(process):
-    """Ends the program as Ctrl-C does, whoever stands between: it keeps what is done."""
+    """Ends the program like Ctrl-C, also through a script in between: finished work is kept."""
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGINT)
         try:

@@ -1,4 +1,4 @@
-"""How far the program has come, in a terminal, in a notebook, or in a log."""
+"""Progress of the program, in a terminal, in a notebook, or in a log."""
 
 import html
 import os

@@ -1,4 +1,4 @@
-"""What comparisons, boards, assessments and repairs say."""
+"""Results of comparisons, boards, assessments and repairs."""
 
 import functools
 import html
@@ -9,7 +9,7 @@ from . import figures
 
 # In the order of the table: name, heading.
 def percent(rate):
-    """93 (91 to 94), or nothing where no loop was looked at."""
+    """93 (91 to 94), or nothing if no loop counts."""
     value, lower, upper = (rate[key] for key in ("value", "lower", "upper"))
     if value is None or value != value:
         return ""
@@ -216,7 +216,7 @@ class Assessment:
 
     @functools.cached_property
     def repair(self):
-        """The channel that the verdict names, corrected; None where it names none."""
+        """The correction of the channel that the verdict names; None if it names no channel."""
         if self.json.get("repair") is None:
             return None
         return Repair(json.dumps(self.json["repair"]), self._context())

@@ -1,3 +1,3 @@
-"""The version of the package, that of the program it belongs to (a test compares them)."""
+"""The version of the package, which equals that of the program (a test compares them)."""
 
 __version__ = "0.2.0"
