@@ -14,8 +14,8 @@ namespace mpm {
 /// each caller, as if each made it.
 enum class PaidBy : std::int8_t { first, each };
 
-/// Values that are derived from one thing: a record, a benchmark, a world. Each is made when it is first
-/// asked for, and is kept for all who ask again. Its type and its key name it among the values of this thing.
+/// Values that are derived from one object: a record, a benchmark, a world. Each is computed at the first
+/// request and kept for later requests. Its type and its key name it among the values of this thing.
 ///
 /// Nothing is kept before keep(), and nothing in a copy, which may be changed: there each caller makes its
 /// own. The owner must not change what the values are derived from after keep(). Threads may ask at once: one

@@ -7,7 +7,8 @@ namespace mpm {
 
 /// Bad input: the text names the quantity, what was found and what is allowed.
 ///
-/// Numerical outcomes (an infeasible problem, an iteration limit) are statuses in a result, never this.
+/// Numerical outcomes (an infeasible problem, an iteration limit) are statuses in a result, never an
+/// InputError.
 class InputError : public std::invalid_argument {
  public:
   /// Text: "`quantity`: found `found`; allowed: `allowed`".

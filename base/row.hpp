@@ -141,7 +141,7 @@ Row<Owner> value_row(NumberText text, std::function<T(const Owner&)> get,
   return {std::move(text), {}, {}, std::move(access)};
 }
 
-/// One member, in the file as it is in memory but for its type. A value that a whole number cannot take, or
+/// One member, in the file as in memory except for its type. A value that a whole number cannot take, or
 /// that has no word in an enumeration with words, leaves the member as it is.
 template <class T, class Owner, class Lens>
 Row<Owner> member_row(NumberText text, Lens lens) {

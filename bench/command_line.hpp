@@ -12,8 +12,8 @@ struct CommandResult {
   std::string message;  ///< for stdout when done (help, version), else for stderr; may be empty
 };
 
-/// Reads a command line and does what it says: results on stdout, progress on stderr. Wrong usage and wrong
-/// input give the code bad_input, whatever else goes wrong not_finished. Throws nothing.
+/// Reads a command line and runs it: results on stdout, progress on stderr. Wrong usage and wrong input give
+/// the code bad_input, any other failure not_finished. Throws nothing.
 CommandResult execute(int argc, const char* const* argv);
 
 }  // namespace mpm

@@ -10,14 +10,14 @@
 
 namespace mpm {
 
-/// The run without mismatch and disturbance, against which every experiment is held, and whether the chain
+/// The run without mismatch and disturbance, with which every experiment is compared, and whether the chain
 /// itself calls it healthy.
 ///
 /// With too little excitation the variances of the active CVs are mostly noise, which S0 filters out of y0,
 /// and Ivar of a perfect model is far from 1: every experiment would then count as impactful and the location
-/// of the CV would be chance. A study must therefore pass this check first. One without excitation asks for
-/// another check (SelfCheck): its y0 has no variance of its own, and what can be known is whether the
-/// variance of a healthy loop comes out the same twice, which is what Ivar_basis (6.22) is held against.
+/// of the CV would be chance. A study must therefore pass this check first. A study without excitation needs
+/// another check (SelfCheck): its y0 has no variance of its own, so the check is whether two healthy loops
+/// have the same variance, with which Ivar_basis (6.22) compares.
 struct BasisCase {
   int world = kExactWorld;  ///< whose benchmark `trajectory` is
   OperatingPoint point;

@@ -17,9 +17,9 @@ struct StructureFit {
   double damping_multiplier;        ///< the same of xi
 };
 
-/// The CVs at an active limit in both structures, in the order of the second; none when the study has no
-/// second one. The multipliers stand in the place of those of S0Perturbation: Ivar_diag bears a change of
-/// structure when it bears them.
+/// The CVs at an active limit in both structures, in the order of the second; none if the study has no second
+/// structure. The multipliers replace those of S0Perturbation: Ivar_diag tolerates a change of structure if
+/// it tolerates these.
 std::vector<StructureFit> structure_fits(const Study& study, const BasisCase& basis);
 
 }  // namespace mpm

@@ -18,8 +18,8 @@ struct TunedBasis {
   SolverStatistics solver;  ///< of all its loops, those that give T0 among them
 };
 
-/// Is the loop of this experiment diagnosed with a basis case of its own? It is when its tuning differs from
-/// that of the study, unless the study says that nobody noticed the change (TuningSensitivity::design).
+/// Whether the loop of this experiment is diagnosed with a basis case of its own: if its tuning differs from
+/// that of the study, unless the change is unnoticed in the study (TuningSensitivity::design).
 bool has_tuned_basis(const Study& study, const ExperimentDraw& draw);
 
 /// The basis case with which the loop of this experiment is to be diagnosed: S0 belongs to the controller and

@@ -41,8 +41,8 @@ class ExperimentRunner {
   /// of its loops.
   ExperimentRecord run(std::int64_t index, StorePolicy store, const StepObserver& observer = {});
 
-  /// What the methods say of an experiment with status ok that was run before: of its loop where it was kept,
-  /// otherwise of the loop run again.
+  /// The answers of the methods on an experiment with status ok that was run before: on its stored loop, or
+  /// on the loop run again if it was not stored.
   std::vector<AssessmentRecord> assess(const ExperimentRecord& record);
   /// What these of its methods say, in this order.
   std::vector<AssessmentRecord> assess(const ExperimentRecord& record,
@@ -51,12 +51,12 @@ class ExperimentRunner {
   Trajectory simulated(const ExperimentDraw& draw) {
     return simulate_experiment(study_of(draw), draw, factory_);
   }
-  /// The loop of such an experiment as the methods see it. An experiment whose controller has no S0 of its
-  /// own has none: only y_sim.
+  /// The loop of such an experiment as the methods see it. If its controller has no S0 of its own, the loop
+  /// has only y_sim.
   AssessedLoop loop_of(const ExperimentRecord& record);
-  /// Another record of the plant of such an experiment, in which nothing is wrong, as the methods see it: the
-  /// world is the same, and excitation, noise and historian are its own (own_benchmark_index()). No sample
-  /// where it does not run to its end.
+  /// Another record of the plant of such an experiment, without a fault, as the methods see it: the world is
+  /// the same, and it has excitation, noise and historian of its own (own_benchmark_index()). It has no
+  /// samples if its loop does not run to its end.
   AssessedLoop benchmark_of(const ExperimentRecord& record) const;
   /// Does assess() run loops of this experiment: one that was not kept, those that give another S0, or for
   /// the chain those with one of two faults alone?

@@ -44,8 +44,8 @@ struct LoopRecord {
 
 /// What only a simulation knows of a loop, y = G(u, d) + y_d + v with the plant G: no method sees it.
 struct LoopTruth {
-  /// One of the loops with one of two faults alone; empty in an experiment with one fault or none, and where
-  /// the loop with both does not run to its end.
+  /// A loop with only one of two faults; empty in an experiment with one fault or none, and if the loop with
+  /// both does not run to its end.
   struct Alone {
     Eigen::MatrixXd y, u;  ///< ny x N and nu x N, as in Trajectory
   };
@@ -55,8 +55,7 @@ struct LoopTruth {
   Alone mpm_alone = {}, ud_alone = {};
 };
 
-/// Everything that is known of one experiment: what was drawn, how it ended, the truth, and what each method
-/// of the study says of it.
+/// Everything about one experiment: the draw, the end, the truth, and the answer of each method of the study.
 ///
 /// In an experiment with mismatch and disturbance on one CV the loop is run three times: with both, with the
 /// mismatch alone and with the disturbance alone. The methods see the loop with both; of the other two the
@@ -77,7 +76,7 @@ struct ExperimentRecord {
   PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for, or
                             ///< its record has gaps
   SolverStatistics solver;  ///< of all loops of the experiment
-  /// The loop that was assessed, when it was asked for: as it was measured. recorded() gives what the methods
+  /// The assessed loop as it was measured, if it was requested. recorded() gives the loop that the methods
   /// saw.
   std::optional<LoopRecord> loop;
   std::optional<LoopTruth> truth = {};  ///< of that loop, when it was asked for

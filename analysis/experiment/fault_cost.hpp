@@ -12,8 +12,9 @@
 
 namespace mpm {
 
-/// What a fault costs: the loop with it against the same loop without it (same world, excitation and noise),
-/// in expectation over noise and background. Signs are kept: a fault by which a variance falls is no loss.
+/// The cost of a fault: the loop with it compared with the same loop without it (same world, excitation and
+/// noise), in expectation over noise and background. Signs are kept: a fault that lowers a variance is no
+/// loss.
 ///
 /// | member         | size | meaning                                                              |
 /// |----------------|------|----------------------------------------------------------------------|

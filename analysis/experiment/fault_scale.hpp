@@ -24,11 +24,11 @@ double effect(const Study& study, const ExperimentDraw& draw, const Trajectory& 
 
 /// The scales at which the faults of `draw`, which has the scales 1, have the effect that the study draws for
 /// them (`impact` of [mismatch], [disturbance] and [other]): found by pilot loops, with mismatch and
-/// disturbance each alone. They have the noise of the experiment, so that an experiment with one fault has
-/// the effect itself. The effect need not grow with the scale, and some faults never reach it: a dead time
-/// cannot become negative, a factor leaves neither [0.1, 10] nor, for a parameter of a nonlinear plant, its
-/// range. Then the scale is that of the pilot loop whose effect is nearest. `y_basis` is that of the basis
-/// case; `pilots` takes the work of the pilot loops.
+/// disturbance each alone. They have the noise of the experiment, so an experiment with one fault has exactly
+/// this effect. The effect need not grow with the scale, and some faults never reach it: a dead time cannot
+/// become negative, a factor leaves neither [0.1, 10] nor, for a parameter of a nonlinear plant, its range.
+/// Then the scale is that of the pilot loop whose effect is nearest. `y_basis` is that of the basis case;
+/// `pilots` takes the work of the pilot loops.
 FaultScales scales_for_impact(const Study& study, const ExperimentDraw& draw, const Eigen::MatrixXd& y_basis,
                               const QpSolverFactory& factory, SolverStatistics& pilots,
                               const StepObserver& observer = {});

@@ -21,7 +21,7 @@ enum class Correctness : std::int8_t {
 template <>
 inline constexpr auto kWords<Correctness> = word_list("not judged", "wrong", "right");
 
-/// What a method says of a named scenario, CV by CV, against what the study says of it.
+/// The answer of a method on a named scenario, CV by CV, compared with the study.
 struct CvJudgement {
   std::vector<Eigen::Index> found;         ///< affected CVs that are flagged
   std::vector<Eigen::Index> missed;        ///< affected CVs that are not
@@ -55,8 +55,8 @@ struct Judgement {
   Correctness parameter = Correctness::not_judged;
   Correctness size = Correctness::not_judged;
   Correctness candidate = Correctness::not_judged;
-  /// |size - true size| over the true deviation from the model (1 of a factor, 0 of what is added), of those
-  /// whose parameter is right: 1 is no better than the model. NaN otherwise.
+  /// |size - true size| over the true deviation from the model (from 1 for a factor, from 0 for a shift), of
+  /// those whose parameter is right: 1 is no better than the model. NaN otherwise.
   double size_error = kNaN;
   std::optional<CvJudgement> cvs;
   bool flagged = false;                ///< the loop is
@@ -74,17 +74,17 @@ struct Judgement {
 /// Throws nothing; every question is not judged without a verdict.
 Judgement judge(const Study& study, const ExperimentRecord& record, const AssessmentRecord& assessment);
 
-/// The truth about what a fault costs: some Ivar_basis (6.22), the variance of a CV against the same loop
-/// without fault, lies outside the band of impact of the study. In a world: FaultCost::has_impact(). No
-/// method has a part in it.
+/// The truth about the impact of a fault: some Ivar_basis (6.22), the variance of a CV over that in the same
+/// loop without the fault, lies outside the band of impact of the study. In a world it is
+/// FaultCost::has_impact(). It does not depend on any method.
 bool has_impact(const DiagnosisOptions& options, const ExperimentRecord& record);
 
 /// The experiments over which the study counts what a method says of the source of a fault: those that it
 /// flags, or all with a verdict (diagnosis.source_population).
 bool in_source_population(const Study& study, const AssessmentRecord& assessment);
 
-/// What the answer says is wrong with the loop as a whole: the source of the located CV of a flagged loop.
-/// None when the loop is not flagged, nothing is said, or the method tells no sources.
+/// The source that the answer gives for the whole loop: that of the located CV of a flagged loop. None if the
+/// loop is not flagged, the answer has no source, or the method names no sources.
 FaultSource named_source(const AssessmentRecord& assessment);
 
 /// Is this the source of a fault of this kind? Of a fault that is neither mismatch nor

@@ -37,7 +37,7 @@ struct LoopConditions {
   }
 };
 
-/// Above this share of the samples a constraint counts as a cause of what a linear S0 does not explain. The
+/// Above this share of the samples a constraint counts as a reason why a linear S0 fails. The
 /// basis case of chapter6 has a CV at another limit in 6.5 % of its samples, from noise and steps alone.
 inline constexpr double kOftenActive = 0.1;
 

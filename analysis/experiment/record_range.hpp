@@ -10,12 +10,12 @@
 
 namespace mpm {
 
-/// The records of experiments in the order of their index, to be looked at one after the other: records in
-/// memory, or ones that are read anew each time, so that there is one of them at a time.
+/// The records of experiments in the order of their index, one after the other: either records in memory, or
+/// records that are read anew each time, with only one of them in memory.
 class RecordRange {
  public:
   using Visit = std::function<void(const ExperimentRecord&)>;
-  /// The next record at each call, which is there until the next call; null behind the last one.
+  /// The next record at each call, valid until the next call; null after the last one.
   using Next = std::function<const ExperimentRecord*()>;
   using At = std::function<ExperimentRecord(std::size_t)>;
 
@@ -31,7 +31,7 @@ class RecordRange {
       : size_(size), begin_(std::move(begin)), at_(std::move(at)) {}
 
   std::size_t size() const { return size_; }
-  /// Goes through them at the pace of whoever calls it, to the end or not.
+  /// Goes through them at the pace of the caller, who may stop before the end.
   Next one_by_one() const { return begin_(); }
   void each(const Visit& visit) const;
   /// The one at a place below size().

@@ -33,7 +33,7 @@ ChannelRepair identified_channel(const Study& study, const OperatingPoint& point
                                  const Channel& channel, const std::optional<MismatchParameter>& only = {},
                                  const FitSurroundings& beside = {});
 
-/// The repair that the answer of a method asks for; none where it names no channel, or does not flag the
+/// The repair that follows from the answer of a method; none if it names no channel or does not flag the
 /// loop. Throws InputError as fit_channel().
 std::optional<ChannelRepair> channel_repair(const Study& study, const OperatingPoint& point,
                                             const AssessedLoop& loop, const AssessmentRecord& said);
@@ -68,10 +68,10 @@ RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, cons
                            const AssessedLoop& loop, const ChannelRepair& repair,
                            const QpSolverFactory& factory);
 
-/// What a repaired channel promises from a record alone, all that is known in a plant: variances of the CVs
-/// as RepairedLoop has them, with the errors of the record under the model of the study (`now`) and under the
-/// repaired one (`predicted`). With samples that count they are counted_costs(): what a CV costs its
-/// controller, over these samples alone.
+/// The gain of a repaired channel that a record alone predicts, as in a plant: variances of the CVs as in
+/// RepairedLoop, with the errors of the record under the model of the study (`now`) and under the repaired
+/// model (`predicted`). If only some samples count, they are counted_costs() instead: the cost of a CV in its
+/// controller, over these samples.
 struct PromisedRepair {
   ChannelRepair repair;
   Eigen::VectorXd now, predicted;

@@ -13,17 +13,16 @@
 
 namespace mpm {
 
-/// What the repair of each channel of the model would bring, by simulation: the truth for methods that name a
-/// channel. With J = LoopCost::total() of the loop of an experiment, its fault there from the first sample
-/// on,
+/// The gain of repairing each channel of the model, by simulation: the truth for methods that name a channel.
+/// With J = LoopCost::total() of the loop of an experiment, its fault there from the first sample on,
 ///
 ///     gain(i, j) = (E J - E J(i, j)) / E J_0
 ///
 /// J is that of the loop as it is, J(i, j) that of the same loop under the controller whose model has the
 /// true channel from input j to CV i (loop_with_model()), J_0 that of the same loop without the fault. The
 /// inputs are the MVs, and behind them the MDs. The expectation is over noise and background; the loops of
-/// one noise are compared with each other. 0.3: the repair takes away 30 % of what the loop costs without the
-/// fault. A gain below 0 is a repair that does harm.
+/// one noise are compared with each other. 0.3 means that the repair saves 30 % of the cost of the loop
+/// without the fault. A repair with a gain below 0 does harm.
 ///
 /// | member | shape          | meaning                                                                    |
 /// |--------|----------------|----------------------------------------------------------------------------|
@@ -35,7 +34,7 @@ namespace mpm {
 struct RepairGains {
   Eigen::MatrixXd gain, error;
 
-  /// What the best repair brings; none where no gain is positive beyond chance: above twice its error.
+  /// The gain of the best repair; none if no gain is positive beyond chance, that is, above twice its error.
   std::optional<double> best() const;
   /// The share of it that the repair of this channel brings, at least 0; 0 of no channel. There must be a
   /// best one.

@@ -40,9 +40,9 @@ enum class Prominence : std::int8_t {
   detail,    ///< nobody
 };
 
-/// One number that a study has found: its name, what it means, and its value with its uncertainty. Archive,
-/// summary, report, gates, sweep and the reported numbers of a study iterate over these rows, and none of
-/// them takes a name apart to learn what it means.
+/// One statistic of a study: its name, its meaning, and its value with its uncertainty. Archive, summary,
+/// report, gates, sweep and the reported numbers of a study iterate over these rows; none of them parses a
+/// name for its meaning.
 struct Finding {
   std::string name;     ///< by which studies, gates and people refer to it: "mpm.located"
   std::string label;    ///< for tables under the heading of its group, with the marks of plot labels

@@ -14,7 +14,7 @@ struct FinishedBoard {
   std::vector<std::string> methods = {};
   std::vector<CellScores> cells = {};  ///< with places in Suite::plants and Suite::families
 
-  /// The same cell here; null where there is none that was run.
+  /// The same cell in this run; null if it was not run.
   const CellScores* same_cell(const CellScores& cell) const;
   /// "mpmbench 1.0 (revision)"
   std::string runner() const { return "mpmbench " + program + " (" + revision + ")"; }
@@ -27,10 +27,10 @@ struct JoinedBoard {
 };
 
 /// Puts the methods of `finished` beside `own`, the methods of each of `cells`, cell by cell. A method in
-/// both is that of `cells`. A loop whose truth is another one in the two counts for one's own methods alone;
-/// so does a whole cell that the finished board lacks, or whose loops or worlds are not the same. `program`:
-/// the version that has run `cells`. Where every method of `finished` is one's own too, nothing of it is
-/// shown, and nobody is marked.
+/// both is taken from `cells`. A loop whose truth differs between the two counts only for your own methods;
+/// so does a whole cell that the finished board lacks, or whose loops or worlds differ. `program`: the
+/// version that has run `cells`. Where every method of `finished` is one's own too, nothing of it is shown,
+/// and nobody is marked.
 JoinedBoard join_boards(const Suite& suite, const std::vector<std::string>& own, const std::string& program,
                         std::vector<CellScores> cells, const FinishedBoard& finished,
                         double confidence = kBoardConfidence);

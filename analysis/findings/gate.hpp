@@ -40,9 +40,10 @@ struct GateResult {
   Finding measured;
   GateOutcome outcome = GateOutcome::inconclusive;
   GateDoubt doubt = GateDoubt::none;
-  /// How far the number or interval is from changing the outcome, in units of the number; NaN without one.
-  /// Positive for a gate that passes: the distance to the nearest limit. Negative otherwise: by how much a
-  /// value, a whole interval, or (inconclusive) one end of an interval is beyond its limit.
+  /// Distance of the number or interval from changing the outcome, in the unit of the number; NaN without a
+  /// number. For a gate that passes it is positive, the distance to the nearest limit. Otherwise it is
+  /// negative, the distance by which a value, a whole interval, or (inconclusive) one end of an interval is
+  /// beyond its limit.
   double margin = kNaN;
 };
 

@@ -70,17 +70,17 @@ struct PooledScores : MethodScores {
   /// is not its own.
   std::vector<double> shares_of_ceiling = {};
   SourceConfusions confusions = {};  ///< of the cells of which its answers are kept
-  /// It gave a verdict on fewer than kFewestAnswers of the loops: its rates rest on a part of what those of
-  /// others rest on.
+  /// It gave a verdict on fewer than kFewestAnswers of the loops, so its rates cover fewer loops than those
+  /// of the others.
   bool answers_in_part() const;
-  /// The interval of its false alarms on healthy loops lies above kMostFalseAlarms as a whole.
+  /// The whole interval of its false alarms on healthy loops lies above kMostFalseAlarms.
   bool too_many_false_alarms() const;
 };
 
 inline constexpr double kMostFalseAlarms = 0.05;
 
-/// The method that knows what a study draws: a reference in the families that draw exactly what it knows of
-/// (SuiteAxis::has_reference). Elsewhere, and over plants and families together, it is not counted.
+/// The method that knows the distributions of a study: a reference in the families that draw only what it
+/// knows (SuiteAxis::has_reference). It is not counted elsewhere, nor over plants and families together.
 inline constexpr std::string_view kReferenceMethod = "ceiling";
 
 /// What a method is asked to do.
@@ -137,9 +137,9 @@ struct Leaderboard {
   bool is_own(std::size_t method) const;
 };
 
-/// Does the method answer the question whose answers this rate counts? Not without a loop that counts, and of
-/// kRankingSource not where it names mismatches alone, or disturbances alone: in no loop of one of them, but
-/// in some of the other.
+/// Whether the method answers the question of this rate. It does not without a loop that counts, nor, for
+/// kRankingSource, if it names only mismatches or only disturbances: the one in no loop, the other in some
+/// loop.
 bool answers(const Leaderboard& board, std::size_t method, std::string_view rate);
 
 /// 1: the best of those that answer the question; none: it does not.
@@ -156,7 +156,7 @@ struct RankedMethod {
 /// kRankingRepair; empty for another suite. Equal values have the same rank.
 std::vector<RankedMethod> ranking(const Leaderboard& board);
 
-/// Was the reference asked, on a family of its own?
+/// Whether the reference was run on a family in which it counts.
 bool has_reference(const Leaderboard& board);
 
 /// The families that no method passes.

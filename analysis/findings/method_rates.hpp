@@ -105,9 +105,10 @@ std::vector<UnansweredPart> unanswered_parts(const Study& study, const MethodRat
 /// Of the loops: with a verdict on fewer, a method is not judged on the same loops as the others.
 inline constexpr double kFewestAnswers = 0.9;
 
-/// Can this method be called the best at something? It gives a verdict on nearly all loops (kFewestAnswers),
-/// and flags at least half of the faults with an impact (of all faults, where none has one), and more of them
-/// than of the healthy loops. One that flags next to nothing may be right in all that it flags.
+/// Whether this method may be called the best at something: it gives a verdict on nearly all loops
+/// (kFewestAnswers), and flags at least half of the faults with an impact (of all faults if none has an
+/// impact), and more of these than of the healthy loops. A method that flags hardly any loop may be right in
+/// every loop that it flags.
 bool answers_and_detects(const MethodRates& rates);
 
 /// The row "compare.METHOD.NAME", without a value.
@@ -121,7 +122,7 @@ Finding method_finding(const std::string& method, const MethodNumber& number, co
 /// calibration the thresholds.
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method);
 
-/// How the false alarms of a method agree with what it states of them.
+/// How the false alarms of a method agree with the rate that it states.
 enum class FalseAlarmMark : std::int8_t {
   none,   ///< they do, or no healthy loop has a verdict
   fewer,  ///< the interval of the rate of the healthy loops that it flags lies below

@@ -12,8 +12,8 @@
 namespace mpm {
 
 /// The verdicts of one method on the windows of one loop. A window that ends before the onset of the fault,
-/// or of a loop without one, has nothing to find. An alarm begins where a flagged window follows one that is
-/// not flagged: a monitor that stays on is one alarm.
+/// and any window of a loop without a fault, is fault-free. An alarm begins where a flagged window follows
+/// one that is not flagged, so an alarm that lasts over several windows counts once.
 struct MonitoredLoop {
   std::int64_t verdicts_before = 0;  ///< windows with a verdict and nothing to find
   std::int64_t false_alarms = 0;     ///< alarms that begin in them

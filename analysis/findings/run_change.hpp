@@ -18,7 +18,7 @@
 
 namespace mpm {
 
-/// One of two runs: what is known of it. All of it must outlive what is said of it.
+/// One of two runs that are compared. It must outlive the comparison.
 struct StudyRun {
   const Study& study;
   const AssessmentForms& forms;

@@ -32,7 +32,7 @@ struct MethodFindings {
 /// All that a study reports, computed once, each number with its uncertainty.
 struct StudyFindings : Endings {
   std::int64_t assessed = 0;  ///< loops that some method has looked at
-  /// Of each record in their order, none where no method has looked at it, and its world (draw.world).
+  /// The answer on each record in their order, none if no method assessed it, and its world (draw.world).
   LoopTruths truths;
   std::vector<int> worlds;
   std::vector<MethodFindings> methods;      ///< in the order of the study
@@ -43,8 +43,9 @@ struct StudyFindings : Endings {
   /// scenarios whose every CV is judged rightly.
   Rate located, source_recognised, false_alarm, right_scenarios;
   std::optional<S0Changes> s0_changes;  ///< of the chain; none in a study that does not perturb S0
-  /// The table of all of the above: first those of the study, of the chain by kind and where model and plant
-  /// agree, then those of the other methods by kind, then every method as they are compared.
+  /// The table of all of the above: first the numbers of the study, of the chain by kind, and of loops in
+  /// which model and plant agree; then those of the other methods by kind; then the comparison of all
+  /// methods.
   std::vector<Finding> rows;
 
   /// The findings of the method of this name; null when it is none of the study.

@@ -12,8 +12,8 @@ namespace mpm {
 /// The share of simulated records without a fault that the threshold of a verdict leaves above it.
 inline constexpr double kTrialFalseAlarms = 0.02;
 
-/// How far an answer on a record is to be trusted: what the same method made of simulated loops like it
-/// (analysis/study_files/recorded_study.hpp), of which the truth is known.
+/// How far to trust an answer on a record: the answers of the same method on simulated loops like it
+/// (analysis/study_files/recorded_study.hpp), whose truth is known.
 struct TrialFindings {
   /// The conformal threshold of the scores of the loops without a fault at kTrialFalseAlarms; with too few of
   /// them the largest score. NaN without such loops.

@@ -40,8 +40,8 @@ Eigen::MatrixXd arx_regressors(const ModelOrder& order, const Eigen::Ref<const E
 /// | y      | output  | N      |
 /// | u      | inputs  | nu x N |
 ///
-/// Rank-deficient data give that status and the coefficients of least norm, without a covariance. The poles
-/// are what the data say, stable or not.
+/// Rank-deficient data give that status and the coefficients of least norm, without a covariance. The data
+/// determine the poles, stable or not.
 /// @throws InputError for an order with F, C or D, without a parameter, or for another number of inputs;
 ///   different lengths, values that are not finite, no more samples than parameters; invalid options
 Identification identify_arx(const Eigen::Ref<const Eigen::VectorXd>& y,

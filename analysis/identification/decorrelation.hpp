@@ -48,13 +48,13 @@ struct Decorrelation {
 ///                  L_i = sqrt(1 - a^2) q^-1/(1 - a q^-1) ((q^-1 - a)/(1 - a q^-1))^(i-1)
 ///
 /// Laguerre filters (Wahlberg 1991) reach as far back as a long impulse response with few coefficients; a = 0
-/// gives L_i = q^-i. Filtered inputs are nearly dependent, with singular values of all sizes, and which
-/// columns a pivoted factorisation takes hangs on the last bits. So the regression is a ridge regression, on
-/// filtered inputs of norm 1, that leaves a direction with singular value s by the share r^2/(s^2 + r^2), r =
-/// 1e-10 of the norm of them all: the orthogonal projection, but for directions that are rounding. Without
-/// inputs the residuals are the deviations from the means. The model of a search without a usable status
-/// serves as it is: its residuals are those of a stable model, though perhaps not of the best one; they are
-/// counted.
+/// gives L_i = q^-i. Filtered inputs are nearly dependent, with singular values of all sizes, so the last
+/// bits decide which columns a pivoted factorisation takes. The regression is therefore a ridge
+/// regression, on filtered inputs of norm 1, that leaves a direction with singular value s by the share
+/// r^2/(s^2 + r^2), r = 1e-10 of the norm of them all: the orthogonal projection, but for directions that are
+/// rounding. Without inputs the residuals are the deviations from the means. The model of a search without a
+/// usable status serves as it is: its residuals are those of a stable model, though perhaps not of the best
+/// one; they are counted.
 ///
 /// | symbol | name    | shape | meaning                          |
 /// |--------|---------|-------|----------------------------------|

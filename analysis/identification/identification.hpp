@@ -47,7 +47,7 @@ struct Identification {
   Eigen::Index first_sample = 0;  ///< the first of them
 };
 
-/// Refuses data that no model of these orders can be identified from: other than nu rows, different lengths,
+/// Refuses data from which no model of these orders can be identified: other than nu rows, different lengths,
 /// values that are not finite, no parameter, or no more samples from `first_sample` on than parameters.
 /// @throws InputError naming what was found and what is allowed
 void require_identification_data(const Eigen::Ref<const Eigen::VectorXd>& y,

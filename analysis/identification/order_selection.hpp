@@ -12,7 +12,7 @@
 
 namespace mpm {
 
-/// By what one of several models is chosen.
+/// Criterion that chooses one of several models.
 enum class OrderCriterion : std::int8_t {
   validation_fit = 0,  ///< %Fit (3.32) of the simulated output on validation data: what the thesis reports,
                        ///< and what counts when the response to the inputs is wanted

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// An output-error model of one order, and what it leaves.
+/// An output-error model of one order, and its residual.
 struct OutputErrorFit {
   PolynomialModel model;  ///< `noise_variance` is the loss
   double loss = 0.0;      ///< sum e^2/N over the N samples of the record
@@ -16,8 +16,8 @@ struct OutputErrorFit {
 
 /// Output-error models of several outputs from the same inputs, over several orders, from rest: for each the
 /// search that `identify_prediction_error` makes from its best start, without a covariance and a verdict on
-/// its end, in a fraction of the time. Where a search is stopped before it has ended, or a start rests on
-/// regressors that are near to dependent, both differ by what rounding makes of that.
+/// its end, in a fraction of the time. If a search is stopped before its end, or a start depends on nearly
+/// dependent regressors, the two differ by magnified rounding errors.
 ///
 /// | symbol | meaning                                     | shape  |
 /// |--------|---------------------------------------------|--------|

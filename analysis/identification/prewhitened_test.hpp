@@ -22,7 +22,7 @@ struct PrewhitenedTest {
   Eigen::Index order = 0;     ///< p of the autoregression
 };
 
-/// Do signals X help to predict e, when what e says of itself is known? With A(q) = 1 - a_1 q^-1 - ... the
+/// Whether signals X help to predict e, given the past of e. With A(q) = 1 - a_1 q^-1 - ... the
 /// autoregression of e alone (`whiteness`), the F tests of b = 0 in
 ///
 ///   A(q) e(k) = c + b' A(q) x(k) + w(k)

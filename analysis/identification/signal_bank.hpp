@@ -25,7 +25,7 @@ class SignalBank {
   ConstSignal operator[](Eigen::Index a) const {
     return {at(a / 8, 0) + a % 8, samples_, Eigen::InnerStride<8>()};
   }
-  /// Throws std::logic_error when the memory has fewer samples: kernels would read what is none of the bank.
+  /// Throws std::logic_error if the memory has fewer samples, because kernels would read outside of the bank.
   void require_memory(Eigen::Index samples) const;
   /// Sample k, -memory() or later, of the eight signals of a group.
   double* at(Eigen::Index group, Eigen::Index k) { return memory_of_.data() + place(group, k); }

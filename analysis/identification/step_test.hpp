@@ -27,8 +27,8 @@ struct StepResponse {
 };
 
 /// Steps every input of the plant of the study up and, from rest again, down: in open loop, about the
-/// operating point, without faults. The mean of the two is free of what bends the plant the same way for
-/// either. The noise is of a stream of its own. Errors: InputError for sizes that do not fit, a number of
+/// operating point, without faults. The mean of the two is free of an effect of nonlinearity that is the same
+/// for both. The noise is of a stream of its own. Errors: InputError for sizes that do not fit, a number of
 /// samples < 1, a plant that fails under a step, and as Plant::reset().
 std::vector<StepResponse> step_test(const Study& study, const StepTestOptions& options);
 

@@ -84,8 +84,8 @@ double location_margin(const Eigen::Ref<const Eigen::VectorXd>& ivar_diag, Locat
 Eigen::VectorXd basis_variance_indices(const Study& study, const Eigen::Ref<const Eigen::MatrixXd>& y,
                                        const Eigen::Ref<const Eigen::MatrixXd>& y_basis);
 
-/// What the variances of the samples `first` ... first + samples - 1 of a record are taken about: the
-/// setpoints of CVs that have one; empty where that is the mean for all.
+/// Centres of the variances of the samples `first` ... first + samples - 1 of a record: the setpoints of CVs
+/// that have one; empty if the centre of all is the mean.
 SetpointTrajectories variance_centres(const Study& study, Eigen::Index first, Eigen::Index samples);
 
 /// Runs the chain on records y (ny x N); keeps the workspace of the indicators between calls, so each thread

@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// What one loop costs, in the weights of its own controller; means over its samples.
+/// The cost of one loop in the weights of its own controller; means over its samples.
 ///
 /// | symbol | member    | size | equation                                                          |
 /// |--------|-----------|------|-------------------------------------------------------------------|
@@ -37,7 +37,7 @@ enum class LevelCost {
 /// Does the CV cost the distance to a setpoint, and not that outside of its range?
 bool costs_by_setpoint(const Study& study, Eigen::Index cv, LevelCost levels);
 
-/// What each CV costs as its controller has it, without weights, ny: the mean over the samples from `first`
+/// The cost of each CV in its controller, without weights, ny: the mean over the samples from `first`
 /// on of (y - y_set)^2 for a CV with a setpoint, and of the squared distance outside of its soft limits for
 /// any other, in the unit of the CV squared. Samples at which the CV is off or missing (NaN) do not count;
 /// NaN without any. For simulated loops and for records.

@@ -23,8 +23,7 @@ struct MpmIndicator {
   double co_skn = kNaN;
   /// Number of window lengths scanned.
   int scanned = 0;
-  /// Number of window lengths behind the mean that rests on the fewest; less than `scanned` where signals
-  /// stand still.
+  /// Number of window lengths behind the mean with the fewest; less than `scanned` if signals stand still.
   int used = 0;
 };
 

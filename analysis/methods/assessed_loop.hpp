@@ -16,8 +16,8 @@
 
 namespace mpm {
 
-/// The records of one closed loop as a method sees them: what the plant's historian keeps, and what the
-/// nominal model makes of it.
+/// The records of one closed loop as a method sees them: the record of the historian, and the response of the
+/// nominal model to it.
 ///
 /// | symbol | member | shape  | meaning                                                       |
 /// |--------|--------|--------|---------------------------------------------------------------|
@@ -41,9 +41,9 @@ struct AssessedLoop {
   Eigen::MatrixXd y, u, u_target, d, y_sim, y_set;
   /// Further signals of the historian that are not in the model, one row each; 0 x 0 without any.
   Eigen::MatrixXd candidates = {};
-  /// Of each CV what the record of a plant cannot tell of y - y_sim, c x N: a constant, and what its model
-  /// had in memory where it begins; at right angles, with a mean square of 1. y_sim has it by least squares.
-  /// Empty: nothing.
+  /// For each CV the directions of y - y_sim that the record of a plant leaves open, c x N: a constant, and
+  /// the initial memory of its model; orthogonal, with a mean square of 1. y_sim contains them by least
+  /// squares. Empty: none.
   std::vector<Eigen::MatrixXd> untold = {};
   const AssessedLoop* whole = nullptr;  ///< the record that this is a window of; null: it is whole
   Eigen::Index first = 0;               ///< sample of it at which the window begins
@@ -112,8 +112,8 @@ class ModelCorrection {
   ModelCorrection& operator=(const ModelCorrection&) = default;
   virtual ~ModelCorrection() = default;
 
-  /// The loop with what these errors explain of y - y_sim added to y_sim: what is left is new. It is derived
-  /// from `loop`.
+  /// The loop after the part of y - y_sim that these errors explain was added to y_sim: the rest is new. It
+  /// is derived from `loop`.
   virtual std::shared_ptr<const AssessedLoop> corrected(const AssessedLoop& loop) const = 0;
 };
 

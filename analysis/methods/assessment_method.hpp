@@ -34,9 +34,9 @@ struct AssessmentRequirements {
   bool analyses_as_shown = false;
 };
 
-/// What a method makes of the errors of the model that the benchmark shows (AssessmentContext::correction),
-/// where a study has them learnt. It is a factor of its own: with_other_information() has the same method
-/// with them, or without.
+/// How a method uses the errors of the model that the benchmark shows (AssessmentContext::correction), if the
+/// study learns them. This is a factor of its own: with_other_information() gives the same method with or
+/// without them.
 enum class ModelInformation : std::int8_t {
   unused,   ///< it does not look at y_sim, or goes by errors of its own
   nominal,  ///< nothing: y_sim is that of the nominal model
@@ -155,8 +155,8 @@ std::vector<AssessmentMethodInfo> reduced_methods(const AssessmentMethodInfo& me
 std::optional<std::string> unmet_requirement(const AssessmentRequirements& requirements,
                                              const AssessmentContext& context, const AssessedLoop& loop);
 
-/// A method with its context. It checks first whether the method applies. The answer is derived from the
-/// loop: while that keeps what is derived from it, the method is asked once, whoever asks.
+/// A method with its context. It checks first whether the method applies. The answer is a value derived from
+/// the loop: while the loop keeps derived values, the method runs once for all callers.
 class Assessor {
  public:
   /// `context` must outlive the assessor.
@@ -190,8 +190,8 @@ class Assessor {
   std::unique_ptr<AssessmentMethod> method_;  ///< made for the first loop to which it applies
 };
 
-/// The assessor of this method under the context, one for all that ask for it: the panel, and methods that
-/// ask another method. One of its own for each where the context keeps nothing.
+/// The assessor of this method under the context, shared by all callers: the panel, and methods that use
+/// another method. Each caller gets its own if the context keeps no derived values.
 std::shared_ptr<Assessor> shared_assessor(const AssessmentMethodInfo& info, const AssessmentContext& context);
 
 }  // namespace mpm

@@ -6,11 +6,10 @@
 
 namespace mpm {
 
-/// Two methods as one: the detector says whether a loop is flagged, and its score; the namer says the CV, its
-/// source, the channels, the mismatch and the candidate. A loop in which the namer finds nothing has a
-/// disturbance, as far as the namer tells sources: what is left of it where it looks for mismatches alone.
-/// Its CV is then the worst one of the detector, or of the namer. Where the namer has no verdict nothing but
-/// the CVs of the detector is named.
+/// Two methods as one: the detector flags a loop and gives its score; the namer gives the CV, its source, the
+/// channels, the mismatch and the candidate. If the namer names sources and finds none in a flagged loop, the
+/// source is a disturbance, because a namer may look only for mismatches. Its CV is then the worst one of the
+/// detector, or of the namer. If the namer has no verdict, only the CVs of the detector are named.
 AssessmentMethodInfo composite_method(const std::string& name, const AssessmentMethodInfo& detector,
                                       const AssessmentMethodInfo& namer);
 

@@ -52,7 +52,7 @@ void add_corrected(nlohmann::ordered_json& json, const AssessedLoop& loop, const
 /// operating point and benchmark (loop_json): all that a method may know besides the loop. No draw, no seed.
 nlohmann::ordered_json context_json(const AssessmentContext& context, SignalForm form = SignalForm::lists);
 
-/// What a method of this program says of a loop, in the form of an answer (see assessment_of()):
+/// The answer of a method of this program on a loop, in the form of a message (see assessment_of()):
 /// `cv_flagged`, `cv_score` and `cv_source` of all CVs where it locates CVs, and its numbers of the loop, of
 /// CVs and of channels; `not_applicable` or `error` where there is no verdict.
 nlohmann::ordered_json answer_json(const Assessment& assessment, const PlantModel& plant,

@@ -15,8 +15,8 @@ namespace mpm {
 
 /// The methods of a study, each with what it has learnt about the controller. Each thread has its own panel;
 /// an answer depends on the loop only. What several methods derive from a loop or from the context is made
-/// once (AssessedLoop::derived, AssessmentContext::derived). The time of an answer has all that the method
-/// would have made of the loop if it were asked alone.
+/// once (AssessedLoop::derived, AssessmentContext::derived). The time of an answer includes all values that
+/// the method would have derived from the loop if it ran alone.
 class MethodPanel {
  public:
   /// Methods that assess loops of `study` by what they have learnt in `context`, whose basis case must have

@@ -24,7 +24,7 @@ const std::vector<AssessmentNumberInfo>& source_probability_numbers();
 /// Does a method with these numbers state them?
 bool states_probabilities(const MethodDescription& method);
 
-/// What it states of a loop, with the sum 1; none where it states nothing, or no probabilities.
+/// The probabilities that it states for a loop, with the sum 1; none if it states no probabilities.
 std::optional<SourceProbabilities> stated_probabilities(const AssessmentRecord& said);
 
 /// The least probability of the truth that the logarithmic score counts: one that says 0 and is wrong is
@@ -55,7 +55,8 @@ class Reliability {
   void add(const SourceProbabilities& stated, FaultSource truth);
   void add(const Reliability& more);
   const std::array<Bin, kBins>& bins() const { return bins_; }
-  /// Mean over the loops of |mean stated probability - share that is right| of their bin; NaN without a loop.
+  /// Mean over the loops of |mean stated probability - share of right answers| of their bin; NaN without a
+  /// loop.
   double error() const;
   std::int64_t count() const;
 

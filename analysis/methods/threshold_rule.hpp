@@ -18,7 +18,8 @@ namespace mpm {
 /// The value of such an option in options of a method, which are JSON.
 double threshold_in(const std::string& options, const std::string& option);
 
-/// What decides on the answers of such a method besides this option: its fingerprint without it.
+/// Everything except this option that the answers of such a method depend on: its fingerprint without the
+/// option.
 std::string fingerprint_without(const std::string& option, const MethodDescription& method);
 
 /// Throws BrokenPromise, with `place`, for a method that answers more than what has a score, and numbers.

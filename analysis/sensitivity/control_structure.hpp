@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// Which constraints a controller works at: it is linear as long as they stay the same, and has an S0 of its
-/// own for each set (3.3.3, 6.3).
+/// The constraints at which a controller works. It is linear as long as they stay the same, and has an S0 for
+/// each set (3.3.3, 6.3).
 struct ControlStructure {
   std::vector<ActiveConstraint> active;  ///< CVs at a setpoint or a soft limit, in their order
   std::vector<Eigen::Index> fixed_mvs;   ///< MVs at a hard limit, in their order

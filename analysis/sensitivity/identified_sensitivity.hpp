@@ -17,7 +17,8 @@ struct IdentifiedSensitivityOptions {
   /// controller answers at the sample at which the reference moves and the plant one sample later. Dead time
   /// is found by small leading coefficients of B, or by further delays in the grid.
   OrderGrid orders{{0}, {2, 3, 4}, {2, 3, 4}, {1}, {1}, {1}};
-  /// How the order is chosen, and the search. `selection.fit.start` says what was before the record.
+  /// Options of the choice of the order and of the search. `selection.fit.start` is the state before the
+  /// record.
   OrderSelectionOptions selection;
 
   /// @throws InputError for fewer than 1 sample or invalid options of the selection

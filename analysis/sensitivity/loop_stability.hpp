@@ -11,8 +11,8 @@
 
 namespace mpm {
 
-/// Is the closed loop of a linear plant stable under the controller, as long as the set of its active
-/// constraints is that of the operating point?
+/// Whether the closed loop of a linear plant is stable under the controller, as long as its set of active
+/// constraints is that of the operating point.
 ///
 /// With this set the controller is linear. Its moves follow from the state of its model, from the inputs that
 /// are still on their way, and from the output bias b = y - y_sim of the active CVs:

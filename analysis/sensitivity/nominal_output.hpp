@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// The outputs that the loop would have had without modelling errors, and what they are made of.
+/// The outputs that the loop would have had without modelling errors, and their parts.
 ///
 /// | symbol  | member  | shape  | definition                                     |
 /// |---------|---------|--------|------------------------------------------------|

@@ -8,7 +8,7 @@ namespace mpm {
 ///
 ///   Lambda = G o (G^-1)^T,
 ///
-/// entry by entry: what MV j does to CV i with all other loops open, over what it does with all other CVs
+/// entry by entry: the effect of MV j on CV i with all other loops open, over its effect with all other CVs
 /// held perfectly. Rows and columns sum to 1; diagonal entries far from 1 show strong interaction.
 ///
 /// | symbol | name   | meaning                               | shape | unit |

@@ -5,7 +5,7 @@
 namespace mpm {
 
 /// A one-class support vector machine with a radial kernel, trained by libsvm (Schoelkopf, Platt,
-/// Shawe-Taylor, Smola and Williamson 2001): a point x lies outside of what it has learnt where
+/// Shawe-Taylor, Smola and Williamson 2001): a point x lies outside of the learnt region if
 ///
 ///   sum_i alpha_i exp(-gamma |x - x_i|^2) < rho,   0 <= alpha_i <= 1,   sum_i alpha_i = nu n
 ///

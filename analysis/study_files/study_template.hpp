@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// What somebody knows of a plant and its controller before there is a study of it.
+/// What is known of a plant and its controller before a study of it exists.
 ///
 /// | symbol      | meaning                                                        | shape | unit |
 /// |-------------|----------------------------------------------------------------|-------|------|

@@ -44,7 +44,7 @@ struct Suite {
   std::string name_of(const SuiteCell& cell) const { return name_of(cell.plant, cell.family); }
 };
 
-/// What of a suite is run; what is left out changes nothing in the rest.
+/// The part of a suite that is run; leaving out a part does not change the rest.
 struct SuiteChoice {
   std::optional<std::uint64_t> seed = {};  ///< instead of that of the file
   std::vector<std::string> plants = {};    ///< by name; empty: all

@@ -26,7 +26,7 @@ struct VerdictRule {
   std::string source;               ///< where the thesis says so
 };
 
-/// Of what a quantity is one.
+/// The object to which a quantity belongs.
 enum class QuantityScope { loop, cv, channel };
 
 /// A quantity that a cell may have.
@@ -35,7 +35,7 @@ struct TableQuantity {
   QuantityScope scope = QuantityScope::cv;
 };
 
-/// One cell of a table: a quantity in one scenario, and what the thesis has for it.
+/// One cell of a table: a quantity in one scenario, and its value in the thesis.
 struct TableCell {
   std::string cv;  ///< empty for a quantity of the loop
   std::string quantity;

@@ -17,7 +17,7 @@ namespace mpm {
 ///   CVs when they are turned round. Explained is 1 - var(y - y_sim) / var(y), not below -1, and far more is
 ///   0.8 in the sum over the CVs
 ///
-/// Errors: InputError for what makes every verdict nonsense: a value that is out of all proportion, a CV that
+/// Errors: InputError for records that make every verdict meaningless: an implausible value, a CV that
 /// never changes, two variables with the same values, and absolute values where the study has deviations: a
 /// mean beyond the range of the hard limits by more than its width, or, without limits, above 8 standard
 /// deviations. Its text has the means, to be pasted as data.operating_point; a variable that has one there is

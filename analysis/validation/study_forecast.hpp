@@ -29,11 +29,11 @@ struct StudyForecast {
   Interval loops_with_impact_interval{0, 0};
   double loops_without_fault = 0;
   /// Width of Wilson's interval of a rate of 1/2 over the loops with impact, and of one of 1/20 over those
-  /// without a fault: how well the study will know what it is for. 1 without a loop.
+  /// without a fault: how precise the rates of the study will be. 1 without a loop.
   double detection_width = 1;
   double false_alarm_width = 1;
   int worlds = 0;  ///< drawn at random, of which the intervals are; 0: none
-  /// In worlds: what the two widths come down to with ever more loops in the same worlds.
+  /// With worlds: the limits of the two widths for ever more loops in the same worlds.
   double detection_width_limit = 1, false_alarm_width_limit = 1;
   std::int64_t bytes_of_a_loop = 0;  ///< its data in an archive, before compression
   /// Median processor time of an assessment by each method of the study, ms.

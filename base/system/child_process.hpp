@@ -14,17 +14,17 @@
 
 namespace mpm {
 
-/// A program that was asked gave no answer: it could not be started, ended, took too long, or sent a line
-/// without end. The text says which, with the end of what it wrote to stderr. One that somebody has killed,
-/// or for which there were no files, processes or memory, is a failure of the surroundings
-/// (is_of_surroundings()), never this.
+/// A program gave no answer: it could not be started, ended, took too long, or sent a line without end. The
+/// text says which, with the last output of its stderr. A program that was killed from outside, or for which
+/// files, processes or memory were lacking, is a failure of the surroundings (is_of_surroundings()), never a
+/// ChildFailure.
 class ChildFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// A program that runs beside this one and answers lines of text by lines of text: messages go to its stdin,
-/// answers come from its stdout, and of what it writes to stderr the end is kept for messages about it.
+/// answers come from its stdout, and the end of its stderr is kept for messages about it.
 ///
 /// Each object belongs to one thread. Objects may be made in any thread, also while others run: the program
 /// is spawned, not forked, and inherits no other file. It has a process group of its own, so that Ctrl-C

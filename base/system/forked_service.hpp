@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// A function at work in a process of its own, so that a crash of what it calls, a call that never comes back
-/// and what it leaves in memory end with this process.
+/// A function that runs in a process of its own, so that a crash, a call that never returns and everything
+/// that it leaves in memory end with this process.
 ///
 /// The process is a copy of this one, with a session of its own; what it prints goes nowhere, and it writes
 /// no core. What it sends is not trusted: it may write into its socket whatever it likes. It is to be made

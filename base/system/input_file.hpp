@@ -7,8 +7,8 @@
 
 namespace mpm {
 
-/// Opens a file of the user for reading. Only a regular file, or a link to one: a pipe or a device may never
-/// answer, or never end. Throws InputError with `path`, what is in the way, and `allowed`.
+/// Opens a file of the user for reading. It must be a regular file, or a link to one: a pipe or a device may
+/// never deliver data, or never end. Throws InputError with `path`, what is in the way, and `allowed`.
 std::ifstream open_input(const std::filesystem::path& path, const std::string& allowed);
 
 /// What can still be read of a stream. Faster by far than iterators over its characters.

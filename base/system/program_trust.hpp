@@ -11,8 +11,8 @@
 
 namespace mpm {
 
-/// A program was to be started that nobody has allowed. It is no InputError, so that no loop counts it as its
-/// outcome: it ends the command.
+/// A program was to be started without permission. This is not an InputError, so that no loop counts it as
+/// its outcome: it ends the command.
 class UntrustedProgram : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

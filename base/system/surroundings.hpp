@@ -9,9 +9,9 @@
 
 namespace mpm {
 
-/// Something could not be asked or run, through no fault of its own: somebody killed its process, or there
-/// was no process for it. This is never kept as an outcome. A run tries once more, and then stops without it
-/// (run_missing()).
+/// A method, plant or controller could not be asked, through no fault of its own: its process was killed, or
+/// there was no process for it. This is never kept as an outcome. A run tries once more, and then stops
+/// without it (run_missing()).
 class SurroundingsFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

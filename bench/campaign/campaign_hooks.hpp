@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// How a campaign is watched and stopped; each may be empty.
+/// Hooks that watch and stop a run; each may be empty.
 struct CampaignHooks {
   /// Asked at each step of the basis case, and before each experiment.
   StopRequest stop = {};

@@ -31,8 +31,8 @@ std::int64_t calibration_loops(const Study& study);
 /// The options by which calibration loops are run: nothing is audited, no loop is kept, and always all.
 RunOptions calibration_options(RunOptions options);
 
-/// The loops of a campaign, its experiments and its calibration loops: how they are run, what is kept of
-/// them, and how that becomes records again.
+/// The loops of a run, its experiments and its calibration loops: how they are run, what is stored of them,
+/// and how records are made from that.
 class CampaignLoops {
  public:
   /// `study` is as study_to_run() gave it. Throws InputError for options that make no campaign.

@@ -12,7 +12,7 @@
 
 namespace mpm {
 
-/// What came of a loop.
+/// The outcome of a loop.
 struct LoopResult {
   std::string bytes;        ///< what is kept of it
   bool failed = false;      ///< worth mentioning to the user
@@ -25,8 +25,8 @@ struct LoopWork {
   using Thread = std::function<LoopResult(std::int64_t key)>;
 
   int jobs = 1;  ///< how many run at once
-  /// Makes what one of the threads works with, before the first of them starts. Empty: every loop runs in a
-  /// worker process.
+  /// Makes the worker of one thread, before the first thread starts. Empty: every loop runs in a worker
+  /// process.
   std::function<Thread()> thread = {};
   /// Threads take neighbours of one group together, as far as that keeps all of them busy: what a thread
   /// learns for one loop serves the others. Empty: loops have nothing in common.
@@ -46,9 +46,9 @@ struct LoopWork {
   std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
   /// Called after each one, in the order of completion; one call at a time, from any thread.
   std::function<void(bool failed)> on_done = {};
-  /// Takes what a loop leaves besides its bytes; one call at a time, from any thread.
+  /// Receives the results of a loop besides its bytes; one call at a time, from any thread.
   std::function<void(std::int64_t key, std::string aside)> on_aside = {};
-  /// Told of what is tried once more; one call at a time, from any thread. Empty: nobody is.
+  /// Called for each loop that is tried once more; one call at a time, from any thread. May be empty.
   std::function<void(const std::string&)> on_warning = {};
 };
 

@@ -25,8 +25,8 @@ class MethodTable;
 /// An option or argument that names a file or a folder, and is not empty.
 CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
                       const std::string& description);
-/// An option that says which part of the work is done, and is not empty: "" is what a shell makes of a
-/// variable that is not set, and would be all of it.
+/// An option that selects a part of the work, and must not be empty: a shell turns an unset variable into "",
+/// which would select all of it.
 void add_part_option(CLI::App& app, const std::string& name, std::string& part, const std::string& allowed,
                      const std::string& description);
 /// The master seed of a study or a suite.

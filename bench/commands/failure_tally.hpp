@@ -9,8 +9,8 @@
 
 namespace mpm {
 
-/// On how many loops each method failed, of one study or of several: what a command tells at its end, quiet
-/// or not.
+/// The number of loops on which each method failed, in one study or several; a command prints it at its end,
+/// quiet or not.
 class FailureTally {
  public:
   void add(const StudyFindings& findings);

@@ -15,8 +15,8 @@ void print_result(std::string_view text);
 /// Writes on stderr. What is lost there is lost.
 void print_note(std::string_view text);
 
-/// The end of a message about work that was stopped: what is done is kept `where` ("in FOLDER"), and
-/// `command` resumes it.
+/// The end of a message about stopped work: finished work is kept `where` ("in FOLDER"), and `command`
+/// resumes it.
 std::string how_to_go_on(std::string_view where, std::string_view command);
 
 /// A command line without `--discard`, which would delete what it is to go on with.

@@ -36,7 +36,7 @@ class ShardBytes {
   std::string entries_;
 };
 
-/// A shard that was there a moment ago: its run, which is at work, has packed it into another one or is
+/// A shard that has just disappeared: its run, which is in progress, has packed it into another one or is
 /// finished.
 class ShardGone : public ArchiveError {
  public:

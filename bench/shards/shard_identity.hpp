@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// One of the things that decide what an experiment gives.
+/// One of the inputs that decide the result of an experiment.
 struct IdentityEntry {
   std::string name;
   std::string value;
@@ -30,7 +30,7 @@ ShardIdentity shard_identity(const Study& study, const RunOptions& options);
 /// The version, the revision, and the digest of the program file: two builds of a revision may differ.
 std::string program_identity();
 
-/// Shards of another run: nothing is wrong with them, so that one may want to delete them or not.
+/// Shards of another run. They are intact, so the user decides whether to delete them.
 class OtherRun : public InputError {
  public:
   using InputError::InputError;

@@ -47,7 +47,7 @@ class ShardStore {
     std::string bytes;
     const std::filesystem::path* shard = nullptr;  ///< that it is in; null: in memory
   };
-  /// The next entry at each call, which is there until the next call; null behind the last one.
+  /// The next entry at each call, valid until the next call; null after the last one.
   using Next = std::function<const Entry*()>;
 
   /// In memory; take_stock() adds shards that others have left.

@@ -6,7 +6,7 @@ namespace mpm {
 
 /// A surrogate of the fractionating column of a delayed coking unit, chapter 7 of the thesis ("coker-12x7"):
 /// 12 CVs, 7 MVs, 2 measured disturbances, times in minutes. Data and models of the plant are not published;
-/// what the chapter says of them is kept, everything else is made up.
+/// the information in the chapter is kept, everything else is invented.
 ///
 /// | what the chapter says                               | here                                |
 /// |-----------------------------------------------------|-------------------------------------|

@@ -23,7 +23,7 @@ struct FmuVariable {
   std::string variability;  ///< "fixed", "tunable", "continuous", ...
 };
 
-/// What a study does with a variable.
+/// The use of a variable in a study.
 enum class FmuRole {
   input,      ///< of causality input
   output,     ///< of causality output or local: any result may be a measurement

@@ -11,7 +11,7 @@ namespace mpm {
 inline constexpr int kArchiveMajorVersion = 2;
 inline constexpr int kArchiveMinorVersion = 6;
 
-/// Writes a campaign and what it has found as an archive (docs/file_format.md), all or nothing
+/// Writes a run and its findings as an archive (docs/file_format.md), all or nothing
 /// (write_file_atomically()): HDF5 that also opens as netCDF-4. The data sets depend on the study and the
 /// records only; what differs between two runs of a study (time, command, jobs) is in attributes.
 ///

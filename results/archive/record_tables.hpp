@@ -32,7 +32,7 @@ struct RecordTable {
 /// All tables of the records of a study, in an order in which they can be put back.
 std::vector<RecordTable> record_tables(const Study& study, const AssessmentForms& forms);
 
-/// What files say of a number of a method: as `text`, and what stands in its place without a verdict.
+/// The description of a number of a method in files, as `text`, with its value for loops without a verdict.
 NumberText kept_text(NumberText text);
 
 }  // namespace mpm

@@ -5,7 +5,7 @@
 
 namespace mpm {
 
-/// The verdict, what it costs, what each method says and how far to trust it.
+/// The verdict, the cost, the answer of each method, and how far to trust them.
 Document assessment_document(const RecordAssessment& assessment);
 
 }  // namespace mpm

@@ -28,7 +28,7 @@ std::vector<std::string> worsened_cvs(const Study& study, const RepairProspect& 
 /// prospect of the same repair; null: it has none.
 std::vector<std::string> worsened_cvs(const Study& study, const Eigen::VectorXd& now,
                                       const Eigen::VectorXd& then, const RepairProspect* prospect);
-/// What the excitation tells of a channel, and what it does not.
+/// Which parameters of a channel the excitation determines, and which it does not.
 std::string information_sentence(const Study& study, const Channel& channel, const ChannelInformation& told);
 
 /// Channels by expected gain, as ranked() has them.

@@ -44,7 +44,7 @@ enum class NumberForm {
   digits,         ///< three digits
 };
 
-/// A number with what is known of its uncertainty.
+/// A number with its uncertainty.
 struct Number {
   double value = kNaN;  ///< NaN: a dash
   NumberForm form = NumberForm::digits;
@@ -137,7 +137,7 @@ struct Sentences {
   std::vector<std::string> words;
 };
 
-/// Names with what there is to say of each.
+/// Names with a description of each.
 struct Facts {
   struct Fact {
     std::string name, words;

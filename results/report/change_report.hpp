@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// What changed from one campaign to another as one HTML page that needs nothing else (docs/report.md):
+/// The changes from one run to another as one HTML page that needs nothing else (docs/report.md):
 /// experiment by experiment where both ran the same ones, otherwise as unrelated runs, with the reason. The
 /// files are their archives, for the commands that replay experiments; their names are shown, or the paths as
 /// they are given when the names are the same. The bytes depend on the campaigns, these names and the version

@@ -37,7 +37,7 @@ struct LoopView {
 /// of their own, and none where the chain of the thesis was not asked.
 std::vector<ShownExperiment> loops_to_show(const Campaign& campaign);
 
-/// What a campaign found as one HTML page that needs nothing else: no network, figures as SVG
+/// The results of a run as one HTML page that needs nothing else: no network, figures as SVG
 /// (docs/report.md). `file` is the archive, for the commands that replay experiments; only its name is shown.
 /// Of the loops that are not in `loops` the page draws none. The bytes depend on the campaign, the name and
 /// the version of gnuplot only.

@@ -9,12 +9,12 @@
 
 namespace mpm {
 
-/// How far an unfinished campaign is.
+/// Progress of an unfinished run.
 struct Unfinished {
   std::int64_t done = 0, experiments = 0;  ///< experiments that are there, and of the whole campaign
 };
 
-/// What a campaign found: what was run, whether the basis case is healthy, the measured numbers with their
+/// The results of a run: the study, whether the basis case is healthy, the measured numbers with their
 /// intervals beside the reported ones, which experiments failed or got a wrong verdict, and the methods side
 /// by side where there are several. `file` is the archive, for the commands that replay these. The summary of
 /// a campaign that is not finished says so first. As a text it is at most 100 columns wide but for the

@@ -26,7 +26,7 @@ struct FailedExperiment {
 /// How many experiments the summary for people lists one by one.
 inline constexpr std::size_t kMostListed = 10;
 
-/// What both forms of the summary are made of. Points into the campaign.
+/// The content of both forms of the summary. It points into the campaign.
 struct SummaryContent {
   explicit SummaryContent(const StudyFindings& of_campaign) : findings(of_campaign) {}
 

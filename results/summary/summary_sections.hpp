@@ -34,7 +34,7 @@ Table wrong_table(const Study& study, const SummaryContent& parts, const std::st
 Table failed_table(const Study& study, const SummaryContent& parts, const std::string& file,
                    std::size_t most);
 
-/// Named scenarios: the verdict on each against what the study says.
+/// Named scenarios: the verdict on each compared with the study.
 Table scenario_table(const Campaign& campaign, const std::string& file);
 /// Ivar and Ivar_diag of every CV; what lies outside the band of impact is marked.
 Table index_table(const Campaign& campaign);

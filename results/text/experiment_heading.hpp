@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// What the chain says of it: "located y1, I_MPM 0.123: MPM", with "no impact, " before it where there is
+/// The verdict of the chain: "located y1, I_MPM 0.123: MPM", with "no impact, " before it where there is
 /// none; of a named scenario "flagged y1 (MPM); right"; how it ended when there is no verdict.
 std::string verdict_text(const Study& study, const ExperimentRecord& record);
 

@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// Which weight of the controller is changed: one of an MV, or one of a CV.
+/// The weight of the controller that is changed: one of an MV, or one of a CV.
 enum class TuningParameter : std::int8_t {
   move_suppression = 0,  ///< of an MV
   target_weight = 1,     ///< of an MV with a target
@@ -29,7 +29,7 @@ inline constexpr auto kWords<TuningParameter> = word_list("move_suppression", "t
                                                           "setpoint_weight");
 inline constexpr auto kTuningParameters = enumerators<TuningParameter>();
 
-/// Is it a weight of an MV? Otherwise it is one of a CV.
+/// Whether it is a weight of an MV; otherwise it is one of a CV.
 bool is_of_mv(TuningParameter parameter);
 
 /// One weight of the controller times a factor.

@@ -2,7 +2,7 @@
 
 namespace mpm {
 
-/// The stem of a control valve that sticks: where it stands when a signal asks for something. Positions and
+/// The stem of a control valve that sticks: its position under a signal. Positions and
 /// signals are in the unit of the MV.
 class ValveStem {
  public:

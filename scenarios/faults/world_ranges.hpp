@@ -33,10 +33,10 @@ struct BackgroundRanges {
   bool operator==(const BackgroundRanges&) const = default;
 };
 
-/// From what the worlds of a study are drawn ([world] of a study file). In a world every channel of the plant
-/// differs a little from the model, small disturbances never stop, and the benchmark is a record of this
-/// plant. The controller and the methods know the model and the benchmark, and nothing else. Every number is
-/// drawn for each channel, CV or MV by itself.
+/// The distributions of the worlds of a study ([world] of a study file). In a world every channel of the
+/// plant differs a little from the model, small disturbances never stop, and the benchmark is a record of
+/// this plant. The controller and the methods know the model and the benchmark, and nothing else. Every
+/// number is drawn for each channel, CV or MV by itself.
 struct WorldRanges {
   int count = 8;  ///< worlds, over which the experiments of each kind are spread evenly
   Distribution gain_factor = Distribution::constant(1.0);

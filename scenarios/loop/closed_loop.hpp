@@ -65,7 +65,7 @@ struct Trajectory {
   std::string message = {};                 ///< what failed, for people; empty when nothing did
 };
 
-/// What differs in a loop from what the controller takes for granted, besides the signals: at most one of
+/// Differences of a loop from what the controller assumes, besides the signals: at most one of
 /// each, from a sample on.
 struct LoopFaults {
   struct Valve {

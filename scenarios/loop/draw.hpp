@@ -16,7 +16,7 @@ ExperimentDraw draw_experiment(const Study& study, std::int64_t index);
 /// The experiment `draw`, which has the scales 1, with these.
 ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultScales& scales);
 
-/// The basis case: nothing is wrong. In a world it is the benchmark that the methods know, with noise and
+/// The basis case, without a fault. In a world it is the benchmark that the methods know, with noise and
 /// background of its own.
 ExperimentDraw basis_draw(int world = kExactWorld);
 

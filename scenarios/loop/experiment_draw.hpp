@@ -14,7 +14,7 @@ namespace mpm {
 /// that of a study without [world], and of the nominal loop of one that has it.
 inline constexpr int kExactWorld = -1;
 
-/// A CV that an experiment affects, and by what.
+/// A CV that an experiment affects, and the fault that affects it.
 struct AffectedCv {
   Eigen::Index cv;
   FaultSource by;  ///< mpm, ud, or mpm_ud for both; none: another fault

@@ -35,15 +35,15 @@ namespace mpm {
 /// measured disturbances are numbers that the controller computes or is told: nothing else happens to them.
 Trajectory recorded(const Study& study, std::int64_t index, Trajectory loop);
 
-/// What a reader gets back of `signal` from a historian with a swinging door (Bristol 1990): an archived
-/// point, and the next one where the straight line between them would leave out a sample in between by more
-/// than `deviation`; samples in between are read on the line. So no sample is off by more than `deviation`,
-/// and the first and the last one are exact. Bristol, E.H. (1990), "Swinging door trending: adaptive trend
-/// recording?", ISA National Conference Proceedings, 749-754.
+/// The values that a reader gets from a historian with a swinging door (Bristol 1990) for `signal`: an
+/// archived point, and the next one where the straight line between them would leave out a sample in between
+/// by more than `deviation`; samples in between are read on the line. So no sample is off by more than
+/// `deviation`, and the first and the last one are exact. Bristol, E.H. (1990), "Swinging door trending:
+/// adaptive trend recording?", ISA National Conference Proceedings, 749-754.
 Eigen::RowVectorXd compressed(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double deviation);
 
-/// What a reader gets back of `signal` with exception reporting: a value is reported where it differs from
-/// the last reported one by more than `deviation`, and stays until the next report.
+/// The values that a reader gets for `signal` with exception reporting: a value is reported where it differs
+/// from the last reported one by more than `deviation`, and stays until the next report.
 Eigen::RowVectorXd reported(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double deviation);
 
 /// The signal with its gaps (NaN) filled.

@@ -55,8 +55,8 @@ Eigen::MatrixXd disturbances_of_mvs(const Study& study, const ExperimentDraw& dr
 /// its mean, itself; of a signal without G_d the straight lines between its samples.
 Eigen::MatrixXd unmeasured_disturbances_of_rows(const Study& study, const ExperimentDraw& draw);
 
-/// What a sensor with a bias or a drift adds to the measurements, ny x samples; empty (0 x 0) without one. A
-/// drift goes from the onset to its size at the last sample.
+/// The error of a sensor with a bias or a drift in the measurements, ny x samples; empty (0 x 0) without one.
+/// A drift goes from the onset to its size at the last sample.
 Eigen::MatrixXd sensor_errors(const Study& study, const ExperimentDraw& draw);
 
 /// The MDs as they are measured, nd x samples, when the experiment has a wrong measurement of one; otherwise

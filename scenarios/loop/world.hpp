@@ -17,7 +17,7 @@ struct BackgroundNoise {
   double pole = 0.0;  ///< a
 };
 
-/// What is true in one world of a study, but for the faults of an experiment.
+/// The properties of one world of a study, without the faults of an experiment.
 ///
 /// | member         | size   | meaning                                                       |
 /// |----------------|--------|---------------------------------------------------------------|

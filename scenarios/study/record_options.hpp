@@ -71,7 +71,7 @@ struct RecordOptions {
            std::any_of(cv_shift.begin(), cv_shift.end(),
                        [](double shift) { return shift != static_cast<double>(static_cast<int>(shift)); });
   }
-  /// Does the historian keep anything else of the CVs than what was measured?
+  /// Whether the historian changes the measurements of the CVs in any way.
   bool alters() const {
     return resamples() || outlier_share > 0.0 || quantisation > 0.0 || missing_share > 0.0 ||
            bad_share > 0.0 || exception > 0.0 || compression > 0.0;

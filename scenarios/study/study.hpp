@@ -91,7 +91,7 @@ struct SensitivityOptions {
   bool operator==(const SensitivityOptions&) const = default;
 };
 
-/// How S0 is made wrong on purpose, to see what an error in it costs ("Sensitivity of S0" in section 6.5.2).
+/// Deliberate errors in S0, to see their effect ("Sensitivity of S0" in section 6.5.2).
 struct S0PerturbationOptions {
   std::vector<double> multipliers;      ///< of time constant and damping in (6.24), ascending; empty: none
   std::vector<Eigen::Index> cvs;        ///< whose experiments are looked at; empty: all at an active limit
@@ -125,7 +125,7 @@ enum class SelfCheck {
   none,
 };
 
-/// By what a fault has an impact in a world: the variance of a CV, or its cost as the controller has it
+/// The measure by which a fault has an impact in a world: the variance of a CV, or its cost in the controller
 /// (cv_costs()). The cost of the whole loop counts with either.
 enum class ImpactMeasure : std::int8_t { variance, cost };
 

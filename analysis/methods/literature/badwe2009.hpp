@@ -87,8 +87,8 @@ struct Badwe2009Result {
 
 /// The method of Badwe et al. (2009) as in section 2.2.2 and appendix A1.2 of the thesis: names the channels
 /// of the model with a mismatch. With the prediction error e = y_sim - y = (G0 - G) u - v, correlation of e_j
-/// with u_i alone would name every MV that moves together with one whose channel is wrong. The
-/// correlation is therefore taken of what the other MVs U^i leave of both:
+/// with u_i alone would name every MV that moves together with one whose channel is wrong. So the correlation
+/// is taken between the residuals of both with respect to the other MVs U^i:
 ///
 ///   u_i(k) = V1_i  U^i(k) + eps1_i    (2.5), (A1.5)
 ///   e_j(k) = V2_ij U^i(k) + eps2_ij   (2.6), (A1.6)
@@ -97,7 +97,7 @@ struct Badwe2009Result {
 /// A strong correlation of eps1_i and eps2_ij (`partial_correlation`) names channel u_i x y_j.
 ///
 /// Noise is removed by `options.filter` first. MVs that are saturated or stand still take part neither as
-/// u_i nor in U^i (2.4.2); one of which nothing is left by (2.5) is `dependent` and not evaluated.
+/// u_i nor in U^i (2.4.2); an MV of which (2.5) leaves nothing is `dependent` and not evaluated.
 ///
 /// @throws InputError for an invalid record, and as `noise_filtered`, `decorrelate` and `partial_correlation`
 Badwe2009Result assess_badwe2009(const Badwe2009Record& record, const Badwe2009Options& options = {});

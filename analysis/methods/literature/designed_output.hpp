@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// By what the order of an output-error model of Badwe et al. (2010) is chosen.
+/// Criterion for the order of an output-error model of Badwe et al. (2010).
 enum class DesignedOrderCriterion : std::int8_t {
   record_fit = 0,      ///< largest %Fit (3.32) over the record that the models are fitted to
   validation_fit = 1,  ///< largest %Fit over the end of the record, of models fitted to what is before it;
@@ -57,7 +57,7 @@ struct ClosedLoopModel {
   double fit = kNaN;
 };
 
-/// The designed outputs of a loop, and what they were estimated with.
+/// The designed outputs of a loop, and the models behind them.
 struct DesignedOutput {
   Eigen::MatrixXd eps;                       ///< controller inputs (3.2), ny x N
   std::vector<ClosedLoopModel> sensitivity;  ///< rows of S_d (3.3)

@@ -23,8 +23,8 @@ namespace mpm {
 Eigen::VectorXd loop_autocovariance(const Eigen::Ref<const Eigen::MatrixXd>& z,
                                     const std::vector<Eigen::Index>& lags);
 
-/// A linear MPC loop in the form of internal model control: its MVs follow from what moves it from outside
-/// and, through linear filters, from the errors e = y - y_sim of its model,
+/// A linear MPC loop in the form of internal model control: its MVs follow from the signals from outside and,
+/// through linear filters, from the errors e = y - y_sim of its model,
 ///
 ///   u = u_0 + Q e,   y = y_0 + S e,   S = I + G0 Q,   e = (G - G0) u + v,   v_l = (1 / A_l) w_l
 ///
@@ -61,7 +61,7 @@ ChannelDifference channel_difference(const TransferFunction& nominal, const Tran
                                      Eigen::Index cv, Eigen::Index mv, double sample_time,
                                      Eigen::Index samples);
 
-/// What moves a loop from outside: the loop on its model, without noise.
+/// The response of a loop to signals from outside: the loop on its model, without noise.
 ///
 /// | symbol | member  | shape  | meaning                                                       |
 /// |--------|---------|--------|---------------------------------------------------------------|
@@ -79,10 +79,10 @@ struct OutsideMoves {
 /// @throws InputError when the controller has no solution
 OutsideMoves outside_moves(const AssessmentContext& context, const AssessedLoop& loop);
 
-/// z of a record: y - y_set, and y where there is no setpoint.
+/// z of a record: y - y_set, or y for a CV without a setpoint.
 Eigen::MatrixXd control_errors(const AssessedLoop& loop, const Eigen::Ref<const Eigen::MatrixXd>& y);
 
-/// The autocovariances of the loop when one channel of the plant is another than in the model, or none. With
+/// The autocovariances of the loop if one channel of the plant, or none, differs from the model. With
 /// e_i = D u_j + v_i of that channel, and all other errors noise,
 ///
 ///   u_j = u_0j + Q_ji D u_j + sum_l Q_jl v_l,   y = y_0 + S e

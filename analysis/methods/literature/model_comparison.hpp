@@ -11,7 +11,7 @@ struct PlantAndNoise {
   Eigen::MatrixXd X;
 };
 
-/// What a healthy period tells about a CV: e = X b_0 + v.
+/// The model of a CV from a healthy period: e = X b_0 + v.
 ///
 /// | symbol    | member      | shape | meaning                                    |
 /// |-----------|-------------|-------|--------------------------------------------|
@@ -43,16 +43,17 @@ NoiseEstimate noise_estimate(const Eigen::VectorXd& v, Eigen::Index p);
 /// Of x about its mean, over all its samples.
 double sample_variance(const Eigen::VectorXd& x);
 
-/// Of the largest information of a coefficient: what is known along a direction that a period leaves open.
+/// Information along a direction that a period leaves open, relative to the largest information of a
+/// coefficient.
 inline constexpr double kLeastInformation = 1e-9;
-/// Share of the variance of what the plant explains below which the rest is not judged as noise.
+/// Below this share of the variance that the plant explains, the rest does not count as noise.
 inline constexpr double kLeastNoiseShare = 0.01;
 
 /// The model of a period. @throws InputError as `refined_groups`
 HealthyModel healthy_model(const PlantAndNoise& period);
 
-/// How far the plant and the noise of a period are from those of a healthy one, each distance over the one
-/// that chance exceeds with the probability asked for: above 1 something has changed.
+/// Distances of the plant and the noise of a period from those of a healthy one, each over the distance that
+/// chance exceeds with a given probability: above 1 something has changed.
 ///
 /// | member         | distance                                                                         |
 /// |----------------|----------------------------------------------------------------------------------|

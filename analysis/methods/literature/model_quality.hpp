@@ -20,7 +20,7 @@ enum class ModelQualityStatus : std::int8_t {
 struct ModelQualityOptions {
   HighOrderArxOptions arx;
   /// Divide the sums of squares of e^d by n - p in place of n, p the coefficients that were fitted: without
-  /// it the index of a perfect model is about sqrt(1 - p/n).
+  /// this correction the index of a perfect model is about sqrt(1 - p/n).
   bool correct_for_parameters = false;
 
   /// @throws InputError for invalid options of the ARX model

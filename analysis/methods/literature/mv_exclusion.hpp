@@ -21,7 +21,7 @@ enum class MvUse : std::int8_t {
 template <>
 inline constexpr auto kWords<MvUse> = word_list("evaluated", "saturated", "standing still", "dependent");
 
-/// Limits of the MVs, one entry an MV; infinite where there is none.
+/// Limits of the MVs, one entry for each MV; infinite for no limit.
 struct MvLimits {
   Eigen::VectorXd lower;
   Eigen::VectorXd upper;

@@ -24,7 +24,7 @@ struct VariabilityOptions {
   bool operator==(const VariabilityOptions&) const = default;
 };
 
-/// What became of the variability along a direction, or of a CV.
+/// Change of the variability along a direction, or of a CV.
 enum class VariabilityChange : std::int8_t {
   none = 0,    ///< 1 lies within the limits
   worse = 1,   ///< both limits lie above 1

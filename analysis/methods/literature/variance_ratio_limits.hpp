@@ -24,7 +24,7 @@ namespace mpm {
 /// @throws InputError for fewer than 2 samples, values that are not finite or a negative largest lag
 double autocorrelation_factor(const Eigen::Ref<const Eigen::VectorXd>& signal, Eigen::Index largest_lag = 0);
 
-/// A sample variance with what its confidence limits need.
+/// A sample variance with the numbers behind its confidence limits.
 struct VarianceSample {
   Eigen::Index samples = 0;
   double autocorrelation_factor = 1.0;  ///< f of (2.9)

@@ -21,9 +21,8 @@ inline constexpr Eigen::Index kFewestNoiseSamples = 10;
 
 /// The noise that simulation errors `e` (N, NaN where there is no sample) of a healthy loop show: white, an
 /// AR(1), or an AR(1) state under white noise, whichever has the largest log L - p log(N) / 2 with its p
-/// parameters. The last one is what the errors look like where a plant is not quite its model. Its deviation
-/// is `least` or more. Throws InputError for fewer than
-/// kFewestNoiseSamples samples.
+/// parameters. The last one is the form of the errors if a plant differs slightly from its model. Its
+/// deviation is `least` or more. Throws InputError for fewer than kFewestNoiseSamples samples.
 BaseNoise fitted_base_noise(const Eigen::Ref<const Eigen::RowVectorXd>& e, double least);
 
 /// Noises with the same phi, and the logarithm of the posterior probability of each.

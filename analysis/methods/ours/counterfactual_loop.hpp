@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// What noise adds to the variance of a CV, of the method `counterfactual`: v of Ivar = var y / (var y0 + v).
+/// The variance that noise adds to a CV, for the method `counterfactual`: v of Ivar = var y / (var y0 + v).
 /// With var y_b that of the benchmark and var y0_b that of the same loop simulated without noise,
 enum class NoiseVariance : std::int8_t {
   difference = 0,  ///< v = var y_b - var y0_b, which may be negative: noise also keeps CVs off their limits

@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// How the sum of squares of whitened samples becomes a likelihood. With the variance of the noise known up
-/// to a factor that is scaled inverse chi-square with nu degrees of freedom, and n samples,
+/// The likelihood from the sum of squares of n whitened samples. With the variance of the noise known up to a
+/// factor that is scaled inverse chi-square with nu degrees of freedom,
 ///
 ///   log L = -log |C| / 2 - (nu + n) / 2 log(1 + SSE / nu),   or  -log |C| / 2 - SSE / 2  for nu = infinity,
 ///

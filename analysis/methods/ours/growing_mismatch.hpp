@@ -26,12 +26,12 @@ struct GrowingMismatch {
 using DirectionsOfGrowing =
     std::function<Eigen::MatrixXd(std::size_t mismatch, double size, const Eigen::RowVectorXd& part)>;
 
-/// What explains the simulation error of a CV by a mismatch that grows,
+/// The explanation of the simulation error of a CV by a mismatch that grows,
 ///
 ///   e = m(theta, r) + Z' z + n,   r(k) = 0 before the onset, 1 from the end on, a line between.
 ///
-/// m(theta, r) is the response to a mismatch of which the part r(k) is there at sample k, as ChangingPlant
-/// has it: a gain goes over at the input, anything else at the output. The evidence is the integral over
+/// m(theta, r) is the response to a mismatch of which the share r(k) is present at sample k, as in
+/// ChangingPlant: a gain changes at the input, anything else at the output. The evidence is the integral over
 /// size, onset and end by Laplace's method. The onset is uniform over the record, the growth uniform up to
 /// its length. Onsets of a coarse grid are tried of every parameter; the best few are refined by Gauss and
 /// Newton, at first with the Z of a healthy model, and then with `directions`.

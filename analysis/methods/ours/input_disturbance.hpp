@@ -35,8 +35,8 @@ class InputLikelihood {
   InputLikelihood(const std::vector<ModelErrors>& models, const std::vector<Eigen::MatrixXd>& series,
                   double sample_time, double noise_freedom);
 
-  /// Of each MV; -infinity where it moves no CV, or where another MV explains so much more that it need not
-  /// be looked at closely.
+  /// The evidence for each MV; -infinity if it moves no CV, or if another MV explains so much more that it
+  /// need not be evaluated closely.
   std::vector<InputEvidence> of_mvs(Eigen::Index mvs) const;
 
  private:

@@ -34,10 +34,10 @@ ModelAssumption model_assumption(const AssessmentContext& context);
 /// "assessment.model: benchmark, because the plant is a program"
 std::string to_string(const ModelAssumption& assumption);
 
-/// Puts what `benchmark` shows of the errors of the model into the context, where its study wants that
-/// (model_assumption()); nothing where it does not, or the benchmark has too few samples of a CV or lacks
-/// some of an input. They are learnt by the first method that asks for them; it fails where the likelihood
-/// of what the benchmark shows has no number. Study and basis of the context must outlive it.
+/// Puts the errors of the model that `benchmark` shows into the context, if its study learns them
+/// (model_assumption()). It puts nothing there if the study does not, or if the benchmark has too few samples
+/// of a CV or lacks samples of an input. The first method that needs the errors learns them; it fails if the
+/// likelihood of the benchmark is not a number. Study and basis of the context must outlive it.
 void learn_model(const AssessedLoop& benchmark, AssessmentContext& context);
 
 /// What was learnt; null where nothing was. Throws InputError as the first method that asks for it.

@@ -29,8 +29,8 @@ struct ModelErrorPrior {
   double bias = 0.0;  ///< standard deviation of a constant, in those of the noise
 };
 
-/// Errors of every channel of a CV of gain, time constant and dead time, each of the relative size `share`. A
-/// dead time shorter than a sample is off by this part of a sample.
+/// Errors of gain, time constant and dead time of every channel of a CV, each of the relative size `share`.
+/// The error of a dead time shorter than a sample is this share of a sample.
 ModelErrorPrior relative_errors(const Study& study, Eigen::Index cv, double share, double bias);
 
 /// The errors of gain, time constant and dead time that the worlds of the study draw, as normal ones of their
@@ -112,7 +112,7 @@ class ModelErrors {
   };
 
   Slope slope_of(const TransferMatrix& model, const ChannelError& error) const;
-  /// What the noise is, and whether errors wander, from what the mean leaves of a healthy record. `unknown`
+  /// The noise, and whether errors vary in time, from the residual of the mean in a healthy record. `unknown`
   /// are the rows that explain a part of it.
   void learn_noise(const Eigen::Ref<const Eigen::RowVectorXd>& left, const Eigen::MatrixXd& unknown,
                    const Eigen::Ref<const Eigen::MatrixXd>& inputs,
@@ -149,14 +149,14 @@ class LearntModel final : public ModelCorrection {
   const ModelErrors& of(Eigen::Index cv) const { return cvs_[static_cast<std::size_t>(cv)]; }
   /// By how much the outputs of the model are late, in the time unit of the plant; below 0: early.
   double late() const { return late_; }
-  /// The first CV whose benchmark rejects an exact model; none where no CV's does.
+  /// The first CV whose benchmark rejects an exact model; none if no benchmark does.
   std::optional<Eigen::Index> rejects_exact_model() const;
-  /// The same from the samples of the benchmark whose place `uses` is true for; none where they are too few.
+  /// The same from the samples of the benchmark for whose position `uses` is true; none if they are too few.
   std::optional<ModelErrors> of_part(const Study& study, const AssessedLoop& benchmark, Eigen::Index cv,
                                      const std::function<bool(Eigen::Index)>& uses) const;
   /// The model with the mean of its errors: the plant without a fault, as far as the benchmark shows it.
   TransferMatrix plant() const;
-  /// By the mean of the errors, and by what of the rest is most probable given the loop.
+  /// By the mean of the errors, and by the most probable rest given the loop.
   std::shared_ptr<const AssessedLoop> corrected(const AssessedLoop& loop) const override;
 
  private:
