@@ -110,27 +110,26 @@ OptionKeys data_keys(Study& study) {
   };
   return {
       key::text("time", o.time, "column of the time stamps")
-          .otherwise("`time`, `timestamp`, `datetime`, `date` or `t`, or the one column of dates; none: a "
-                     "row a sample")
+          .otherwise("`time`, `timestamp`, `datetime`, `date` or `t`, or the one column of dates; none: each "
+                     "row is a sample")
           .allow("a column"),
-      key::text("date", o.date, "column of the dates, if that of the time has the time of day only")
+      key::text("date", o.date, "column of the dates, if the column of the time has only the time of day")
           .otherwise("the one column of dates")
           .allow("a column"),
       one_word("time_unit", o.time_unit, {"s", "min", "h", "d", "ms", "us", "ns", "spreadsheet", "matlab"},
-               "unit of stamps that are numbers. Of s, ms, us and ns since 1970, of days since 1899-12-30 "
-               "(`\"spreadsheet\"`) and of `datenum` (`\"matlab\"`) the dates are known")
+               "unit of stamps that are numbers. s, ms, us and ns since 1970, days since 1899-12-30 "
+               "(`\"spreadsheet\"`) and `datenum` (`\"matlab\"`) give dates")
           .otherwise("found, if the numbers can only be dates of the years 2000 to 2099; else that of the "
                      "plant")
           .allow("`\"s\"`, `\"min\"`, `\"h\"`, `\"d\"`, `\"ms\"`, `\"us\"`, `\"ns\"`, "
                  "`\"spreadsheet\"`, `\"matlab\"`"),
       key::text("time_format", o.time_format,
-                "form of the stamps in the letters of strptime, such as `\"%d%b%Y:%H:%M:%S\"`; each is read "
-                "to its end")
+                "form of the stamps in the letters of strptime, such as `\"%d%b%Y:%H:%M:%S\"`; it must cover "
+                "the whole stamp")
           .otherwise("found")
           .allow("`%Y %y %m %b %d %H %I %M %S %p %z %Z %j` and others"),
       key::text("time_zone", o.time_zone,
-                "zone whose clock the stamps show, such as `\"Europe/Berlin\"`; its changes of the clock "
-                "are undone")
+                "time zone of the stamps, such as `\"Europe/Berlin\"`; its clock changes are removed")
           .otherwise("stamps are taken as they stand")
           .allow("a name of the IANA time zone database"),
       key::text("language", o.language,
@@ -142,28 +141,29 @@ OptionKeys data_keys(Study& study) {
                   {"automatic", "year-month-day", "day-month-year", "month-day-year"},
                   "order of day, month and year; detected from numbers above 12 or points between them"),
       key::option("skip", "whole number, or list of whole numbers",
-                  "lines that are not read: so many at the start, or those of these numbers; rows of units "
-                  "below the heading are found")
+                  "lines that are not read: the first ones (a number), or those with the listed numbers; "
+                  "rows of units below the heading are detected")
           .otherwise("none")
           .allow("1 to 1000 (each)")
           .read([&o](const TomlTable& data, const std::string& key) { o.skip = read_skipped(data, key); }),
       key::choice("layout", o.layout, {"automatic", "wide", "time-per-tag", "long"},
-                  "a row a time stamp; a column of stamps before each column of values; or a row a value. "
-                  "Automatic: several columns of stamps with one name are time-per-tag, and columns of "
-                  "usual names for a tag and a value, without any of a variable, are long"),
+                  "`\"wide\"`: one row for each time stamp. `\"time-per-tag\"`: a column of stamps before "
+                  "each column of values. `\"long\"`: one row for each value. `\"automatic\"`: time-per-tag "
+                  "if several columns of stamps have the same name; long if there are columns with usual "
+                  "names for a tag and a value, and none for a variable"),
       key::text("tag_column", o.tag_column, "column of the tags, if a row is a value")
           .otherwise("`tag`, `tagname`, `point`, `variable`, `name` and others")
           .allow("a column"),
       key::text("value_column", o.value_column, "column of the values, if a row is a value")
           .otherwise("`value`, `val`, `wert`, `reading`")
           .allow("a column"),
-      one_word("separator", o.separator, {",", ";", "\t", "|"}, "between the columns")
+      one_word("separator", o.separator, {",", ";", "\t", "|"}, "separator between the columns")
           .otherwise("found in the heading")
           .allow("`\",\"`, `\";\"`, `\"\\t\"`, `\"|\"`"),
       one_word("decimal", o.decimal, {".", ","}, "decimal sign")
           .otherwise("found in the cells")
           .allow("`\".\"`, `\",\"`"),
-      columns("tags", o.tags, all, "of CVs, MVs and MDs")
+      columns("tags", o.tags, all, "columns of CVs, MVs and MDs")
           .otherwise("`y.NAME`, `u.NAME`, `d.NAME`, or `NAME`")
           .allow("columns"),
       factors("operating_point", o.operating_point, all,
@@ -194,22 +194,21 @@ OptionKeys data_keys(Study& study) {
           .otherwise("none: all is good")
           .allow("columns"),
       key::texts("good_quality", o.good_quality, "texts",
-                 "words for a good quality, in upper or lower case; numbers count in any form (`192.0`). "
-                 "`opc`: words that begin with good, and the good codes of OPC, those of OPC UA if there is "
-                 "one of 2^30 or above, otherwise those of OPC DA (192 and others)"),
-      columns(
-          "mode", o.mode, loop,
-          "whether the controller has a CV or an MV, over time; each holds until the next one. While it has "
-          "not, operators hold the MV where it was recorded, and the CV has no limits and no setpoint")
-          .otherwise("none: it has all of them")
+                 "words for a good quality, in upper or lower case; numbers match in any form (`192.0`). "
+                 "`opc`: words that begin with good, and the good codes of OPC: those of OPC UA if a code is "
+                 "2^30 or above, otherwise those of OPC DA (192 and others)"),
+      columns("mode", o.mode, loop,
+              "whether the controller has a CV or an MV, over time; each value holds until the next one. "
+              "While the controller does not have it, operators hold the MV where it was recorded, and the "
+              "CV has no limits and no setpoint")
+          .otherwise("none: the controller has all of them")
           .allow("columns"),
-      key::texts(
-          "mode_on", o.mode_on, "texts",
-          "words of `mode` for a variable that the controller has, in upper or lower case; numbers count in "
-          "any form"),
+      key::texts("mode_on", o.mode_on, "texts",
+                 "words of `mode` for a variable that the controller has, in upper or lower case; numbers "
+                 "match in any form"),
       key::option("stored_on_change", "list of texts",
-                  "variables that were stored only when they changed: their last value holds until the next "
-                  "one, and nothing of them is missing in between")
+                  "variables that were stored only when they changed: each value holds until the next one, "
+                  "and no sample in between is missing")
           .otherwise("none")
           .allow("variables")
           .read([&o, all](const TomlTable& data, const std::string& key) {
@@ -224,28 +223,29 @@ OptionKeys data_keys(Study& study) {
       key::texts("on_values", o.on_values, "texts",
                  "words for a controller that is on, in upper or lower case"),
       key::choice("cv_resampling", o.cv_resampling, {"mean", "nearest"},
-                  "value of a CV at a sample, of the rows within half a sample time of it"),
+                  "value of a CV at a sample, from the rows within half a sample time of it"),
       key::choice("start", o.start, {"automatic", "rest", "anywhere"},
-                  "whether the record begins at rest at the operating point. Automatic: yes if MVs and MDs "
-                  "begin within half of their standard deviations of it. Anywhere: CVs are not judged until "
-                  "the slowest channel has settled"),
+                  "whether the record begins at rest at the operating point. `\"automatic\"`: yes if MVs and "
+                  "MDs begin within half of their standard deviations of it. `\"anywhere\"`: no, and CVs are "
+                  "not judged until the slowest channel has settled"),
       key::number("most_missing", o.most_missing, NumberRule::inside(0, 1),
                   "largest share of the samples of a variable that may be missing"),
       key::texts("candidates", o.candidates, "columns",
                  "signals outside the model, for the method `candidates`: inputs that the model may lack")
           .allow("columns"),
-      fill_key(o.fill,
-               "what methods that need every sample get for a missing CV: nothing, so that they do not "
-               "apply; the last value; or a straight line. Methods that can handle gaps see them. The loops "
-               "of the calibration run are filled if the first method needs it"),
-      key::option("period", "list of 2 texts", "what is assessed")
+      fill_key(
+          o.fill,
+          "value of a missing CV for methods that need every sample. `\"none\"`: no value, so these methods "
+          "do not apply. `\"hold\"`: the last value. `\"linear\"`: a straight line. Methods that can handle "
+          "gaps see the gaps. The loops of the calibration run are filled if the first method needs it"),
+      key::option("period", "list of 2 texts", "period that is assessed")
           .otherwise("the whole file")
           .allow("stamps as in the file")
           .read([&o](const TomlTable& data, const std::string& key) { o.period = read_period(data, key); }),
       key::option("benchmark", "list of 2 texts, or text",
                   "period in which the controller worked as designed, for the methods that need one")
           .otherwise("the simulated nominal loop")
-          .allow("stamps as in the file, `\"found\"`, or `\"none\"`, so that `assess` proposes none")
+          .allow("stamps as in the file; `\"found\"`; or `\"none\"`, with which `assess` proposes none")
           .read(read_benchmark)};
 }
 

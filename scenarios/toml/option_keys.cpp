@@ -294,7 +294,7 @@ OptionKey distribution(std::string name, Distribution& value, const NumberRule& 
 OptionKeys distribution_keys() {
   return {
       option("constant", "number", "always this value").allow("finite"),
-      option("uniform", "list of 2 numbers", "every value from low to high equally likely")
+      option("uniform", "list of 2 numbers", "every value from low to high is equally likely")
           .allow("low < high"),
       option("log_uniform", "list of 2 numbers", "every ratio equally likely").allow("0 < low < high"),
       option("normal", "list of 2 numbers", "mean and standard deviation; only where every number is allowed")
