@@ -114,7 +114,7 @@ OptionKeys parameter_keys(ForeignVariable& entry) {
   return {name_key(entry,
                    "its name in the FMU or in `reset`, and in `scenario[].parameter[]` and "
                    "`mismatch.plant_parameter[]`",
-                   "of an FMU a Real of causality parameter"),
+                   "for an FMU, a Real of causality parameter"),
           key::number("value", entry.value, NumberRule::finite(), "nominal value, which the study sets")
               .required()};
 }

@@ -78,7 +78,7 @@ OptionKeys change_keys(ParameterChange&) {
           key::option("value", "number", "value in the plant", "of the parameter")
               .otherwise("this or `factor`")
               .allow("what the plant can have"),
-          key::option("factor", "number", "value in the plant, in multiples of that of the model", "1")
+          key::option("factor", "number", "value in the plant, as a multiple of the value in the model", "1")
               .otherwise("this or `value`")
               .allow("as there")};
 }
