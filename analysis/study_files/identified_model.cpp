@@ -163,7 +163,7 @@ IdentifiedModel identified_model(const Study& study, const StepTestOptions& test
     throw InputError(
         "step",
         fmt::format("no channel: {} move no CV", fmt::join(step_texts(study.plant, test.sizes), ", ")),
-        "steps that move a CV; use larger ones where valves stick");
+        "steps that move a CV; use larger steps if valves stick");
   return model;
 }
 

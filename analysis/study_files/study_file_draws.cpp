@@ -108,7 +108,7 @@ std::string channel_text(const Study& study, const ChannelPlace& place) {
 OptionKey mismatch_channels_key(Study& study) {
   const auto read = [&study](const TomlTable& table, const std::string& key) {
     if (study.nonlinear)
-      table.refuse(key, "channels of a plant that is not simulated by its linear model", "plant_parameter");
+      table.refuse(key, "channels of a plant that is not simulated with its linear model", "plant_parameter");
     const std::vector<ChannelPlace> channels = mv_channels(study);
     std::vector<std::string> names;
     for (const ChannelPlace& place : channels)

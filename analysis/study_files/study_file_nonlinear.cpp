@@ -155,7 +155,8 @@ std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& pl
 OptionKey parameter_changes_key(std::vector<ParameterChange>& changes, const Study& study) {
   const auto refuse_linear = [&study](const TomlTable& scenario) {
     if (scenario.has("parameter") && !study.nonlinear)
-      scenario.refuse("parameter", "parameters of a plant that is simulated by its linear model", kNonlinear);
+      scenario.refuse("parameter", "parameters of a plant that is simulated with its linear model",
+                      kNonlinear);
   };
   const auto take = [&](const TomlTable& table, ParameterChange&) {
     const ParameterChange change = read_change(table, study.nonlinear->model);
@@ -178,7 +179,7 @@ OptionKey plant_parameters_key(std::vector<PlantParameterRange>& ranges, const S
       mismatch.refuse("plant_parameter", "nothing",
                       "the parameters that random mismatches of the nonlinear plant change");
     if (mismatch.has("plant_parameter") && !study.nonlinear)
-      mismatch.refuse("plant_parameter", "parameters of a plant that is simulated by its linear model",
+      mismatch.refuse("plant_parameter", "parameters of a plant that is simulated with its linear model",
                       kNonlinear);
   };
   return key::list<ListedRange>(
@@ -193,7 +194,7 @@ OptionKey plant_parameters_key(std::vector<PlantParameterRange>& ranges, const S
 
 Eigen::Index read_inner_input(const TomlTable& disturbance, const Study& study) {
   if (!study.nonlinear)
-    disturbance.refuse("input", "an inner input of a plant that is simulated by its linear model",
+    disturbance.refuse("input", "an inner input of a plant that is simulated with its linear model",
                        kNonlinear);
   return static_cast<Eigen::Index>(read_one_of(disturbance, "input", study.nonlinear->model.inner_inputs));
 }

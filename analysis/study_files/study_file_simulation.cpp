@@ -269,7 +269,7 @@ void read_excitation(const TomlTable& simulation, Study& study) {
     if (choice == 0 && options.is_excited())
       simulation.refuse("excitation", "'none' beside steps, md_noise or dither", "one of the two");
     if (choice != 0 && !options.is_excited())
-      simulation.refuse("excitation", "a choice for signals that are not there",
+      simulation.refuse("excitation", "a choice without any signal",
                         "\"none\", or step, random_steps, limit_step, md_noise, dither");
     options.excitation = choice == 2 ? SignalSequence::each : SignalSequence::shared;
   } else if (!options.is_excited() && (has_mds || study.controller.has_setpoints())) {

@@ -29,7 +29,7 @@ void refuse_sizes_of_nothing(const TomlTable& background, const BackgroundRanges
                       "simulation.noise_standard_deviation > 0 for every CV");
   const Limits& hard = study.controller.mv_hard;
   if (ranges.mv_size.maximum() > 0.0 && !(hard.upper - hard.lower).allFinite())
-    background.refuse("mv_size", "sizes in parts of the hard limits, which an MV has not",
+    background.refuse("mv_size", "sizes relative to the hard limits, which an MV does not have",
                       "controller.mv.NAME.hard with two numbers for every MV");
 }
 
@@ -118,12 +118,12 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
                                      {"dead_time_shift", &WorldRanges::dead_time_shift},
                                      {"extra_lag", &WorldRanges::extra_lag}})
       if (study.nonlinear && !(ranges.*range == none.*range))
-        world.refuse(key, "errors of channels of a plant that is not simulated by its linear model",
+        world.refuse(key, "errors of channels of a plant that is not simulated with its linear model",
                      "plant_parameter");
   };
   const auto refuse_parameters = [&study](const TomlTable& world) {
     if (!study.nonlinear && world.has("plant_parameter"))
-      world.refuse("plant_parameter", "parameters of a plant that is simulated by its linear model",
+      world.refuse("plant_parameter", "parameters of a plant that is simulated with its linear model",
                    "the keys of channels, or a nonlinear plant, a program or an FMU");
   };
   const auto take = [&ranges](const TomlTable& table, const WorldParameter& parameter) {

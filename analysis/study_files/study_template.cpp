@@ -19,10 +19,10 @@ namespace {
 constexpr const char* kHead =
     "# Written by `mpmbench init`. Variables are deviations from the operating point. The model, the limits "
     "and\n"
-    "# the sizes are what was asked for; sample time, horizons, weights, noise, excitation and faults are "
+    "# the sizes are those that you gave; sample time, horizons, weights, noise, excitation and faults are "
     "first\n"
-    "# guesses made from them: change what you know better. `mpmbench validate` looks for what is "
-    "implausible.\n\n";
+    "# guesses made from them: change what you know better. `mpmbench validate` finds implausible "
+    "values.\n\n";
 
 constexpr const char* kCostNote =
     "# To do: a guess that drives CVs with a range to their upper limits. Put in what the MV costs: its "

@@ -46,7 +46,7 @@ std::map<std::string, Study> read_studies(const TomlTable& document, const TomlT
   for (const TomlTable& table : document.tables("variant", {"name", "study", "remove", "set"})) {
     const std::string name = read_name(table, "name");
     if (name == kStudyItself)
-      table.refuse("name", in_quotes(name), "another name: it stands for the study as it is");
+      table.refuse("name", in_quotes(name), "another name: this one stands for the study without changes");
     const auto [study, is_new] = studies.emplace(name, read_variant(table, text, path, name));
     if (!is_new)
       table.refuse("name", in_quotes(name), "each name once");

@@ -69,9 +69,10 @@ TEST_CASE("the keys of a nonlinear plant land in their place", "[nonlinear]") {
 }
 
 TEST_CASE("what a nonlinear study cannot be is refused", "[nonlinear]") {
-  CHECK(refused("", "affected = ['h1']\nparameter = [{name = 'cd1', value = 2}]\n") ==
-        "scenario[0].parameter: found parameters of a plant that is simulated by its linear model; allowed: "
-        "plant.simulated = \"nonlinear\", plant.fmu or plant.program");
+  CHECK(
+      refused("", "affected = ['h1']\nparameter = [{name = 'cd1', value = 2}]\n") ==
+      "scenario[0].parameter: found parameters of a plant that is simulated with its linear model; allowed: "
+      "plant.simulated = \"nonlinear\", plant.fmu or plant.program");
   CHECK(refused("step_limit = 5\n", "") ==
         "plant.step_limit: found a key of the integration of a nonlinear plant; allowed: plant.simulated = "
         "\"nonlinear\"");

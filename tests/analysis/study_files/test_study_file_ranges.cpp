@@ -293,7 +293,7 @@ TEST_CASE("faults beyond one parameter and white noise are checked", "[study_fil
        "disturbance.cvs: found no 'heat', on which `mpm_ud` experiments have a mismatch and its disturbance; "
        "allowed: every CV of mismatch.channels, or mpm_ud = 0"},
       {"", "[mismatch]\nplant_parameter = [{name = \"a\"}]\n", "plant_parameter",
-       "mismatch.plant_parameter: found parameters of a plant that is simulated by its linear model; "
+       "mismatch.plant_parameter: found parameters of a plant that is simulated with its linear model; "
        "allowed: "
        "plant.simulated = \"nonlinear\", plant.fmu or plant.program"},
       {"", "[mismatch]\nimpact = {uniform = [0, 1]}\n", "impact",
