@@ -29,7 +29,7 @@ class DerivedValues {
   DerivedValues& operator=(DerivedValues&&) noexcept;
   ~DerivedValues();
 
-  /// Keeps from now on what is made, and nothing that was made before.
+  /// Keeps values that are computed from now on, but none that were computed before.
   void keep(PaidBy paid);
 
   /// The value of this key, to which `make` returns a std::shared_ptr. It must not ask for this value

@@ -20,7 +20,7 @@ struct Collector {
   }
 };
 
-/// A collector of what `counts` finds, which has the members add(record) and result().
+/// A collector of the result of `counts`, which has the members add(record) and result().
 template <class Counts>
 auto collector_of(Counts counts) -> Collector<decltype(counts.result())> {
   const auto shared = std::make_shared<Counts>(std::move(counts));

@@ -83,7 +83,7 @@ inline constexpr double kMostFalseAlarms = 0.05;
 /// knows (SuiteAxis::has_reference). It is not counted elsewhere, nor over plants and families together.
 inline constexpr std::string_view kReferenceMethod = "ceiling";
 
-/// What a method is asked to do.
+/// The task of a method.
 enum class LeaderboardTask { detection, location, source };
 
 template <>

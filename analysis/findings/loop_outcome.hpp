@@ -14,7 +14,7 @@
 
 namespace mpm {
 
-/// What is true of a loop.
+/// The truth about a loop.
 struct FaultTruth {
   ExperimentKind kind = ExperimentKind::healthy;
   bool impact = false;                   ///< has_impact() of its fault
@@ -87,8 +87,9 @@ struct OutcomeScope {
 FaultTruth truth_of(const Study& study, const ExperimentRecord& record);
 OutcomeScope outcome_scope(const Study& study, const MethodDescription& method,
                            const CalibratedThresholds& thresholds);
-/// Can a method of this scope say this of a loop? A loop without an answer has no other fact, a right CV is
-/// named only in a flagged loop, and no fact is right about something that is not in the loop.
+/// Whether a method of this scope can give this outcome for a loop. A loop without an answer has no other
+/// fact, a right CV is named only in a flagged loop, and no fact is right about something that is not in the
+/// loop.
 bool is_possible(const LoopOutcome& outcome, const FaultTruth& truth, const OutcomeScope& scope);
 
 /// A loop that a method has looked at.

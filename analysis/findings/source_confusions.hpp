@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// What a method answers about the source of a loop.
+/// The answer of a method about the source of a loop.
 enum class AnsweredSource : std::int8_t {
   no_answer = 0,  ///< no verdict
   none = 1,       ///< not flagged

@@ -23,7 +23,7 @@ struct AcfOscillation {
   Oscillation verdict = Oscillation::undetermined;
   /// Decay ratio R of the function over half a period, 0 ... about 1; NaN without two minima and a maximum.
   double decay_ratio = kNaN;
-  /// Lag from the first minimum to the second; NaN without them. Unit: samples.
+  /// Lag from the first minimum to the second; NaN if there are none. Unit: samples.
   double period = kNaN;
 };
 

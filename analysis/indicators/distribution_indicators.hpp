@@ -67,7 +67,7 @@ ScatterShape scatter_shape(const CentredSums& sums);
 struct DistributionIndicators {
   /// Chapter 5, from y0_diag and e0_diag.
   PerStatistic<ScatterMeans> means;
-  /// Chapter 6, I_MPM and what it is made of, from the same scan.
+  /// Chapter 6: I_MPM and its parts, from the same scan.
   MpmIndicator mpm;
   /// Chapter 2, from y0 and e0 at one window length.
   PerStatistic<ScatterShape> shape;
@@ -109,7 +109,7 @@ class DistributionScanner {
 /// Every indicator, named quantity_statistic: co_dkts, angle_kts, regression_angle_skn, ..., and i_mpm.
 std::vector<Row<DistributionIndicators>> distribution_rows();
 
-/// `scatter_diag`, named scatter_quantity_statistic: what a confidence ellipse is made of.
+/// `scatter_diag`, named scatter_quantity_statistic: the numbers of a confidence ellipse.
 std::vector<Row<DistributionIndicators>> scatter_rows();
 
 }  // namespace mpm

@@ -32,7 +32,7 @@ class MpmMeans {
  public:
   /// Takes the scatter of one window length into the means.
   void add(const PerStatistic<CentredSums>& sums);
-  /// The indicator of what was added so far.
+  /// The indicator of the windows added so far.
   MpmIndicator result() const;
 
  private:

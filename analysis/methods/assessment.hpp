@@ -83,8 +83,7 @@ struct Assessment {
   std::string reason;  ///< one sentence for people when the status is not ok
 
   bool flagged = false;  ///< the loop has a fault: the verdict that counts as a detection
-  /// How far the loop is from being flagged; larger is worse. ROC curves are drawn over it. It need not be
-  /// the score of a CV.
+  /// Score of the loop; larger is worse. ROC curves are drawn over it. It need not be the score of a CV.
   double score = kNaN;
   std::vector<CvAssessment> cvs;                     ///< ny; empty when the method does not look at CVs alone
   std::vector<Channel> flagged_channels;             ///< of methods that name channels

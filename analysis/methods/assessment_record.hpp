@@ -99,7 +99,7 @@ struct AssessmentRecord {
   double number(std::string_view name, Eigen::Index row = 0, Eigen::Index column = 0) const;
   /// All numbers of this name, rows x columns of its place; empty when there is none, or no verdict.
   Eigen::MatrixXd values(std::string_view name) const;
-  /// Puts a number in its place, which must be there.
+  /// Stores a number in its place, which must exist.
   void set_number(std::string_view name, double value, Eigen::Index row = 0, Eigen::Index column = 0);
   /// Whether the method flags this CV.
   bool flags(Eigen::Index cv) const;

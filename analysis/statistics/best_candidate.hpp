@@ -28,7 +28,7 @@ auto best_candidate(const Candidates& candidates, Value value = {}) {
   return best;
 }
 
-/// The same where the answer needs one. Throws InputError, by the name of the values, where no candidate is
+/// The same if a candidate is required. Throws InputError, with the name of the values, if no candidate is
 /// left.
 template <class Candidates, class Value = std::identity>
 auto required_best_candidate(const std::string& values, const Candidates& candidates, Value value = {}) {
@@ -38,7 +38,7 @@ auto required_best_candidate(const std::string& values, const Candidates& candid
   return best;
 }
 
-/// The larger one; NaN where one of them is.
+/// The larger of the two; NaN if one of them is NaN.
 inline double larger_or_nan(double a, double b) {
   return a >= b || std::isnan(a) ? a : b;
 }

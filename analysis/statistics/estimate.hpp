@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// Values within one cluster: values that share what is drawn once for all of them.
+/// Values within one cluster: values that share the same draw.
 struct ClusterSum {
   double sum = 0.0;
   std::int64_t count = 0;

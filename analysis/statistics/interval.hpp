@@ -29,7 +29,7 @@ Interval wilson_interval(std::int64_t hits, std::int64_t total, double confidenc
 /// The same interval of a share p of n trials, of which neither p n nor n need be whole.
 Interval score_interval(double share, double trials, double confidence);
 
-/// Trials and hits within one cluster: trials that share what is drawn once for all of them.
+/// Trials and hits within one cluster: trials that share the same draw.
 struct ClusterCount {
   std::int64_t hits = 0, total = 0;
 };

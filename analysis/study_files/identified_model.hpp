@@ -41,7 +41,7 @@ Eigen::VectorXd usual_steps(const Study& study);
 /// moves a CV.
 IdentifiedModel identified_model(const Study& study, const StepTestOptions& test);
 
-/// The model as the table [plant] of a study file, with what was found of each channel in comments.
+/// The model as the table [plant] of a study file, with comments on the fit of each channel.
 std::string model_toml(const Study& study, const IdentifiedModel& model);
 
 /// The responses themselves as CSV, a column CV/INPUT for each channel, which `init --step-response` reads.

@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// Lays `changes` over `target`: tables key by key, everything else as a whole.
+/// Applies `changes` to `target`: tables key by key, everything else as a whole.
 void lay_over(toml::table& target, const toml::table& changes);
 
 /// Takes the keys in the list `remove` of `changes` out of `study`, and lays the tables under `set` over it;

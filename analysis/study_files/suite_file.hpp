@@ -15,7 +15,7 @@ namespace mpm {
 struct SuiteAxis {
   std::string name;   ///< part of the name of a file
   std::string title;  ///< one line for people
-  /// Of a family: it draws exactly what the method `ceiling` knows of, which is a reference there.
+  /// For a family: it draws only what the method `ceiling` knows, so `ceiling` is a reference there.
   bool has_reference = false;
 };
 

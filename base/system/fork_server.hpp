@@ -23,7 +23,7 @@ class ForkServer {
   /// What a service that is made with this setting does; called in its process.
   using MakeService = std::function<ForkedService::Serve(const std::vector<double>& setting)>;
 
-  /// Forks: to be called before threads are at work. Errors: std::system_error when no process can be made.
+  /// Forks; call it before any thread runs. Errors: std::system_error if no process can be made.
   explicit ForkServer(const MakeService& make);
   ForkServer(const ForkServer&) = delete;
   ForkServer& operator=(const ForkServer&) = delete;

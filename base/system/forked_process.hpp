@@ -47,8 +47,8 @@ ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work
 /// process that has no other children.
 void end_children();
 
-/// A message of numbers, or a failure in their place. False when the other end is gone or does not take it in
-/// time.
+/// A message of numbers, or a failure instead of them. False when the other end is gone or does not take it
+/// in time.
 bool send_numbers(int socket, const std::vector<double>& numbers, const SocketPatience* patience = nullptr);
 bool send_failure(int socket, const std::exception& failure);
 

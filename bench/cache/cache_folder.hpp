@@ -32,8 +32,8 @@ class CacheFolder {
 
   /// The file of this identity, which counts as used now; none: there is no whole one.
   std::optional<ShardContent> read(const ShardIdentity& identity) const;
-  /// Puts `content` in its place, and makes room. Where that cannot be done, nothing is kept from then
-  /// on. Returns the reason the first time.
+  /// Stores `content`, and makes room for it. If that fails, nothing is kept from then on. Returns the reason
+  /// the first time.
   std::optional<std::string> write(ShardBytes& content, const ShardIdentity& identity) const;
 
   CacheUsage usage() const;

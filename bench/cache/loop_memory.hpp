@@ -28,7 +28,7 @@ struct KnownLoop {
   std::vector<std::string> unheard = {};  ///< methods whose answers are not known
   bool has_truth = true;                  ///< of an experiment that this program has run as a whole
   bool by_process = false;                ///< a worker process ran it, as the methods are to be asked by one
-  /// Answers that are known and asked for once more, to see that they are the same (require_expected()).
+  /// Known answers that are asked for again, to check that they are the same (require_expected()).
   std::vector<AssessmentRecord> expected = {};
   double audit_share = 0.0;  ///< of its steps that were audited
   std::vector<AuditedStep> audited = {};
@@ -68,7 +68,7 @@ class LoopMemory {
   /// Takes such bytes. One call at a time; find() may run beside it, and does not find them.
   void take(std::int64_t key, std::string bytes);
 
-  /// Leaves what is new in the cache. Returns, the first time, the reason why that cannot be done.
+  /// Writes new results into the cache. Returns, the first time, the reason if that fails.
   std::optional<std::string> write();
 
  private:

@@ -43,7 +43,7 @@ class CampaignLoops {
   const Study& study() const { return study_; }
   const RunOptions& options() const { return options_; }
   std::int64_t experiments() const { return experiments_; }
-  /// Only where the campaign calibrates.
+  /// Only if the run calibrates.
   const Study& calibration() const { return *calibration_; }
   bool calibrates() const { return calibration_.has_value(); }
   /// Experiments and calibration loops.

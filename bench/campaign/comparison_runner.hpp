@@ -37,7 +37,7 @@ struct ComparisonOptions {
   std::map<std::string, std::string, std::less<>> threshold_options = {};  ///< the same
 };
 
-/// What a comparison of a campaign is on.
+/// The loops and methods of a comparison.
 struct ComparedLoops {
   std::vector<std::int64_t> experiments;  ///< indices of those with status ok, among the first ones asked for
   std::int64_t end = 0;                   ///< behind the last index of the campaign

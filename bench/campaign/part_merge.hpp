@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// The pieces into which a campaign was split that are not finished.
+/// The unfinished pieces of a split run.
 struct MissingPieces {
   std::int64_t of = 1;                ///< pieces
   std::vector<std::int64_t> numbers;  ///< in ascending order, from 1 on
@@ -24,7 +24,7 @@ struct MissingPieces {
   std::string array() const;
 };
 
-/// The parts of one campaign, put together again.
+/// The merged parts of one run.
 class PartMerge {
  public:
   /// Looks at the shards of all parts in these folders. A damaged shard is passed over with a warning, what

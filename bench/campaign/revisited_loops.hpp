@@ -14,7 +14,7 @@ namespace mpm {
 
 class LoopMemory;
 
-/// An experiment of a campaign, or one of its calibration loops.
+/// An experiment of a run, or one of its calibration loops.
 struct LoopPlace {
   std::int64_t index = 0;
   bool of_calibration = false;

@@ -26,7 +26,7 @@ class CommandSet {
   /// The task under which the help lists the commands that are added from here on.
   void begin_task(std::string task) { task_ = std::move(task); }
 
-  /// One more command; its options are to be declared in what is returned.
+  /// Adds a command; declare its options in the returned object.
   CLI::App& add(const std::string& name, const std::string& description, Work work);
 
   /// All that the command line declares.

@@ -61,7 +61,7 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named,
                                        const std::vector<std::string>& programs);
 /// --shard of a command that runs several studies, `what`: which of them it runs.
 void add_part_of(CLI::App& app, std::string& shard, const std::string& what);
-/// What that option says; none without it. Throws InputError.
+/// The value of that option; none without it. Throws InputError.
 std::optional<PartNumber> part_of_option(const std::string& text);
 void add_shard_interval(CLI::App& app, double& interval);
 /// --overwrite of a command that writes archives (require_replaceable()).

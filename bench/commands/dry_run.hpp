@@ -19,7 +19,7 @@ void add_dry_run(CLI::App& app, bool& dry_run);
 /// The same of a command that says no time.
 void add_untimed_dry_run(CLI::App& app, bool& dry_run);
 
-/// A run that is asked for.
+/// A requested run.
 struct IntendedRun {
   const Study& study;
   const RunOptions& run;  ///< with the methods of programs

@@ -30,7 +30,7 @@ class Progress {
   /// One more is done; `failed` when it is worth mentioning. One call at a time.
   void advance(bool failed = false);
 
-  /// A line of its own, unless quiet.
+  /// Prints a line, unless quiet.
   void note(const std::string& text);
   /// The same, quiet or not.
   void warn(const std::string& text);
@@ -59,7 +59,7 @@ class Progress {
   bool in_line_ = false;  ///< the line on the terminal is not ended
 };
 
-/// The hooks that show a campaign, and stop it.
+/// The hooks that show the progress of a run and stop it.
 CampaignHooks hooks_of(Progress& progress);
 
 }  // namespace mpm

@@ -10,8 +10,7 @@
 
 namespace mpm {
 
-/// The work of a campaign, as one worker does it: runs experiments and audits steps. Belongs to one thread or
-/// process.
+/// The work of one worker: runs experiments and audits steps. Belongs to one thread or process.
 class ExperimentWork {
  public:
   /// Experiments of `study`; the methods have learnt from the basis case of `basis_study`. All but `factory`

@@ -4,7 +4,7 @@
 
 namespace mpm {
 
-/// Calibration loop i of a campaign is kept under the key kCalibrationKeys + i, experiment i under i.
+/// Calibration loop i of a run has the key kCalibrationKeys + i, experiment i the key i.
 inline constexpr std::int64_t kCalibrationKeys = std::int64_t{1} << 40;
 
 }  // namespace mpm

@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// What one thread works with. Ipopt may run in one thread of a process only, so that a thread has the
+/// The worker of one thread. Ipopt may run in one thread of a process only, so that a thread has the
 /// active-set method. With worker processes that have Ipopt (`leaves`) it leaves them a loop as a whole when
 /// any problem needs Ipopt: one of the loop itself, of those that its truth asks for, or of those that a
 /// method simulates.

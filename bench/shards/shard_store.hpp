@@ -74,7 +74,7 @@ class ShardStore {
 
   /// Takes finished work, and writes a shard when it is time. Throws ArchiveError when that fails.
   void add(std::int64_t key, std::string bytes);
-  /// Writes what is still waiting.
+  /// Writes all waiting results.
   void flush();
 
   /// Puts what is in the shards of the folder, which were all flushed, into as few of them as there can be:
@@ -106,7 +106,7 @@ class ShardStore {
   void hold(std::int64_t key, const std::string& bytes);
   /// Puts all but the removed entries into new shards.
   void pack(const KeySet& removed);
-  /// Writes what is held as a shard.
+  /// Writes the waiting results as a shard.
   Shard write(double seconds);
 
   ShardIdentity identity_;

@@ -10,7 +10,7 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-/// Owners of what SUNDIALS makes. With right sizes and pointers, it fails only for lack of memory.
+/// Owners of SUNDIALS objects. With right sizes and pointers, SUNDIALS fails only for lack of memory.
 namespace mpm::sundials {
 
 /// The deleter of a handle that SUNDIALS frees by its value, or by its address.

@@ -17,7 +17,7 @@
 
 namespace mpm {
 
-/// How, when and by which program a campaign was run. Nothing in it changes a result, but for the solver.
+/// How, when and by which program a run was made. Nothing in it changes a result, except the solver.
 struct CampaignInfo {
   std::string mpmbench_version;
   std::string git_sha;
@@ -62,7 +62,7 @@ struct Campaign {
 AssessmentForms forms_of(const Campaign& campaign);
 std::vector<std::string> method_names(const Campaign& campaign);
 
-/// Notes the command line by which the campaign was run and assessed.
+/// Stores the command line by which the run was made and assessed.
 void note_command(Campaign& campaign, const std::string& command_line);
 
 /// The place of the method that diagnoses (diagnoses()); as many as there are methods when none does.

@@ -19,7 +19,7 @@ namespace mpm {
 /// Errors: as resolved_study().
 std::vector<StudyDifference> campaign_differences(const Campaign& before, const Campaign& now);
 
-/// The methods of `campaign` that `other` does not have.
+/// The methods of `campaign` that are not in `other`.
 std::vector<std::string> methods_alone(const Campaign& campaign, const Campaign& other);
 
 }  // namespace mpm

@@ -43,7 +43,7 @@ struct Place {
   std::string file, what, parent, name;
 
   [[noreturn]] void fail(const std::string& problem) const;
-  /// InputError, of what somebody else has written and nobody here can read.
+  /// InputError for a file from another program that cannot be read.
   [[noreturn]] void refuse(const std::string& found, const std::string& allowed) const;
   /// fail() with the library's own account when `result` says so.
   void check(herr_t result, const char* action) const;

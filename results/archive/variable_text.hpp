@@ -13,7 +13,7 @@ namespace mpm {
 
 // What a file says of a number to people and programs.
 
-/// A word as files have it: with '_' for blanks, which separate the words of an attribute.
+/// A word in the form of files: with '_' for blanks, which separate the words of an attribute.
 std::string flag_word(std::string text);
 
 /// `long_name`, `units` and, where there are any, `comment`, `coordinates` (a variable with further ones,

@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// The verdict in sentences, and what stands beside it.
+/// The verdict in sentences, and the notes beside it.
 struct AssessmentText {
   RecordVerdictText verdict;
   std::vector<std::string> further = {};  ///< of controller and candidates

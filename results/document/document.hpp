@@ -151,7 +151,7 @@ struct Facts {
   std::vector<Fact> list = {};
 };
 
-/// A piece of a page; a text has nothing in its place.
+/// A piece of a page that a text leaves out.
 struct Html {
   std::string text;
 };

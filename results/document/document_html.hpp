@@ -11,7 +11,7 @@ namespace mpm {
 /// without which it is complete. A policy in its head keeps that promise. Errors: GnuplotError.
 std::string document_html(const Document& document);
 
-/// A number over its interval and what it rests on, both small.
+/// A number with its interval and count below it in small type.
 std::string number_html(const Number& number);
 
 /// A whole <table> element in a box that scrolls by itself on a narrow screen, under a caption (words) that

@@ -5,7 +5,7 @@
 
 namespace mpm {
 
-/// `content` in fewer bytes, by zlib: signals that stay where they are take hardly any.
+/// `content` compressed by zlib: constant signals take hardly any bytes.
 std::string deflated(std::string_view content);
 
 /// The content again. Throws std::runtime_error when these bytes do not come from deflated().

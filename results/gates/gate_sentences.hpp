@@ -13,7 +13,7 @@ namespace mpm {
 std::string limit_text(const GateResult& result);
 /// What was measured: "97.2 %"; "-" when nothing was.
 std::string measured_text(const GateResult& result);
-/// Its interval: "90.3 to 99.2 %"; "-" without one.
+/// Its interval: "90.3 to 99.2 %"; "-" if there is none.
 std::string interval_text(const GateResult& result);
 /// By how much the gate passed or fell, with a sign: "+7.2 pp" (percentage points) for a share, "-0.13".
 std::string margin_text(const GateResult& result);

@@ -12,7 +12,7 @@
 
 namespace mpm {
 
-/// Why the page draws a loop.
+/// The reason why the page draws a loop.
 enum class LoopReason {
   faulty,   ///< with a fault and a right verdict, the median of its kind by the cost of the fault
   healthy,  ///< the same without a fault

@@ -34,7 +34,7 @@ std::string row_name(const Leaderboard& board, std::size_t method);
 std::string standing_sentence(const Leaderboard& board, std::size_t method,
                               const std::optional<Standing>& standing);
 
-/// Who is best at what, where one's own methods stand, and the table of board_columns.hpp.
+/// The best method for each question, the place of your own methods, and the table of board_columns.hpp.
 Section standing_section(const Leaderboard& board);
 
 /// The questions that a method may answer, a rate each: those at the threshold for 5 % false alarms.

@@ -19,8 +19,8 @@ bool was_judged(const StudyFindings& findings);
 /// are programs of the user; empty where no loop was judged.
 std::string comparison_answer(const StudyFindings& findings);
 
-/// Sentences, each behind a space: what each of the user's own methods flags, the best first; empty where
-/// none is.
+/// Sentences, each after a space, on the loops that each of the user's own methods flags, the best first;
+/// empty if there is none.
 std::string own_methods_words(const StudyFindings& findings);
 
 /// The rates that matter most, of those that some loop counts for.
@@ -32,7 +32,7 @@ Table overview_table(const Campaign& campaign, const StudyFindings& findings);
 /// The same for a paper (table_latex()).
 std::string comparison_latex(const Campaign& campaign, const StudyFindings& findings);
 
-/// The table with what there is to say of it, for one screen.
+/// The table with its notes, for one screen.
 Section comparison_overview(const Campaign& campaign, const StudyFindings& findings);
 
 /// How often each method of the campaign is right, side by side, and which of two is right where the other is

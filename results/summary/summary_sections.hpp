@@ -18,7 +18,7 @@ Facts run_facts(const Campaign& campaign, const SummaryContent& parts);
 
 /// How far the identified T0 is from the direct one.
 std::string identification_words(const Study& study, const BasisCase& basis);
-/// By how much both solvers differ where one was asked after the other.
+/// Differences between the two solvers on steps that both solved.
 std::string audit_words(const SummaryContent& parts, const CampaignInfo& info);
 
 /// The findings that matter to people, beside the reported ones where the study has some.

@@ -41,7 +41,8 @@ std::vector<MismatchFamily> mismatch_families(const TransferFunction& channel, d
 /// The least value on the grid, refined between its neighbours by golden section.
 double grid_minimiser(const MismatchObjective& objective, const SearchGrid& grid);
 
-/// Where the objective crosses `level` between `inside`, where it is below, and the end of the search.
+/// The point at which the objective crosses `level` between `inside`, where it is below, and the end of the
+/// search.
 double level_crossing(const MismatchObjective& objective, double inside, double end, double step,
                       double level);
 

@@ -59,7 +59,7 @@ struct CounterfactualOptions {
 /// All methods under one context share one (of_context()), and with it the loops that it has simulated.
 class CounterfactualLoop {
  public:
-  /// What Ivar says of a loop.
+  /// The verdict of Ivar on a loop.
   struct Impact {
     /// Flagged if some Ivar lies outside the band of impact, with the number `ivar` of each CV and no verdict
     /// on single CVs; failed if the controller does not run on its own model.
@@ -81,7 +81,7 @@ class CounterfactualLoop {
   /// CV, derived from the record.
   Eigen::VectorXd ivar_diag(const AssessedLoop& loop, const Impact& impact) const;
 
-  /// The verdict of Ivar_diag on each CV of a flagged loop; none where it is NaN. If all are NaN, no loop
+  /// The verdict of Ivar_diag on each CV of a flagged loop; none if it is NaN. If all are NaN, no loop
   /// runs to its end under the errors of the others, and Ivar of `impact` decides.
   std::vector<CvAssessment> located(const Eigen::VectorXd& ivar_diag, const Impact& impact) const;
 

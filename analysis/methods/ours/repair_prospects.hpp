@@ -28,7 +28,7 @@ struct AdequacyOptions {
   bool operator==(const AdequacyOptions&) const = default;
 };
 
-/// A variance counts as better or worse where it changes by more than this factor.
+/// A variance counts as better or worse if it changes by more than this factor.
 inline constexpr double kNoticeableChange = 1.05;
 
 /// The channel of the model after its repair.
@@ -93,7 +93,7 @@ class RepairProspects {
 /// By expected gain, the largest first; those that run on no plant last.
 std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects);
 
-/// The prospect of this channel; null where it ran on no plant.
+/// The prospect of this channel; null if it ran on no plant.
 const RepairProspect* prospect_of(const std::vector<RepairProspect>& prospects, const Channel& channel);
 
 }  // namespace mpm
