@@ -98,8 +98,8 @@ bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessm
 
 /// Which loops a method is right to flag, and no others.
 enum class FlagTruth : std::int8_t {
-  fault = 0,   ///< those with a fault: what a monitor of the model should see
-  impact = 1,  ///< those with a fault that has an impact: what a monitor of the performance should see
+  fault = 0,   ///< those with a fault: the task of a monitor of the model
+  impact = 1,  ///< those with a fault that has an impact: the task of a monitor of the performance
 };
 
 template <>

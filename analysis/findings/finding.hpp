@@ -28,7 +28,7 @@ enum class FindingGroup : std::int8_t {
   study,      ///< all experiments
   kind,       ///< the experiments of one kind: Finding::kind
   dominance,  ///< experiments with both faults, by the dominance of the mismatch
-  s0,         ///< what an error in S0 costs
+  s0,         ///< effect of an error in S0
   faultless,  ///< experiments in which model and plant agree
   method,     ///< a method on all loops, as methods are compared: Finding::method
 };

@@ -23,7 +23,7 @@ struct FinishedBoard {
 /// The cells of one's own run, with the methods of a finished board beside one's own.
 struct JoinedBoard {
   Leaderboard board;  ///< methods: those of the finished board that are not one's own, and these
-  std::vector<std::string> notes = {};  ///< what could not be joined, in sentences
+  std::vector<std::string> notes = {};  ///< methods and cells that could not be joined, in sentences
 };
 
 /// Puts the methods of `finished` beside `own`, the methods of each of `cells`, cell by cell. A method in

@@ -19,7 +19,7 @@ struct FaultTruth {
   ExperimentKind kind = ExperimentKind::healthy;
   bool impact = false;                   ///< has_impact() of its fault
   bool one_cv = false;                   ///< its fault affects one CV
-  ToldSource about = ToldSource::other;  ///< of the kind `other`: what its fault is about
+  ToldSource about = ToldSource::other;  ///< for the kind `other`: the place of its fault
 
   bool faulty() const { return !is_faultless(kind); }
   ToldSource source() const { return told_source(source_of(kind), about); }

@@ -38,7 +38,7 @@ bool has_feature(const Study& study, StudyFeature feature);
 struct MethodNumber {
   const char* name;     ///< "false_alarm_healthy"
   const char* heading;  ///< of tables and figures: "Healthy flagged"
-  const char* meaning;  ///< which loops are looked at, and what of them is counted
+  const char* meaning;  ///< the loops that the rate covers, and the hits among them
   bool low_is_good = false;
   StudyFeature of = StudyFeature::any;
 };

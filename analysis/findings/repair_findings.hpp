@@ -16,7 +16,7 @@ namespace mpm {
 enum class RepairTarget : std::int8_t {
   mismatched,   ///< one with a mismatch
   another,      ///< one without, of a plant that has a mismatch
-  no_mismatch,  ///< one of a plant that has none: it is a disturbance, or nothing
+  no_mismatch,  ///< a channel of a plant without a mismatch: with a disturbance, or no fault
 };
 
 template <>

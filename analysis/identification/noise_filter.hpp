@@ -16,7 +16,7 @@ enum class NoiseFilter : std::int8_t {
   none = 1,
   moving_average = 2,  ///< the mean of the last n samples
   first_order = 3,     ///< x_f(k) = a x_f(k-1) + (1 - a) x(k), a = exp(-1/n)
-  external = 4,        ///< of the MVs only what setpoints and measured disturbances make them do
+  external = 4,        ///< only the part of the MVs that setpoints and measured disturbances cause
 };
 
 /// Each row of a record (m x N) through the same filter of length n samples, from the steady state of the

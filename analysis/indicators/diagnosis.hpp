@@ -119,7 +119,7 @@ class DiagnosisChain {
   DiagnosisOptions options_;
   double mpm_threshold_;
   bool every_cv_;
-  SetpointTrajectories y_set_;  ///< what the variances are taken about; empty: the means of all CVs
+  SetpointTrajectories y_set_;  ///< centres of the variances; empty: the means of all CVs
   WindowScan windows_;
   MpmScanner scanner_;
   int window_;  ///< of the ellipses, samples

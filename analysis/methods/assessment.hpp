@@ -35,7 +35,7 @@ struct CvAssessment {
   double score = kNaN;
   /// From methods that tell sources apart, for a flagged CV or the worst one: mpm or ud; otherwise none.
   FaultSource source = FaultSource::none;
-  ToldSource about = ToldSource::other;  ///< of the source `other`: what it is about, where that is said
+  ToldSource about = ToldSource::other;  ///< for the source `other`: its place, if it is known
 };
 
 /// A channel of the model, CV against MV.

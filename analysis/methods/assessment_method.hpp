@@ -40,7 +40,7 @@ struct AssessmentRequirements {
 enum class ModelInformation : std::int8_t {
   unused,   ///< it does not look at y_sim, or goes by errors of its own
   nominal,  ///< nothing: y_sim is that of the nominal model
-  shown,    ///< y_sim of loop and benchmark has them: the method is shown what is new since the benchmark
+  shown,    ///< y_sim of loop and benchmark contains them: the method sees the changes since the benchmark
   learnt,   ///< it asks for them itself
   denied,   ///< it asks for them and is told nothing
 };
@@ -94,7 +94,7 @@ class AssessmentMethod {
 struct MethodDescription {
   std::string name;     ///< on the command line and in table files: "sun"
   std::string title;    ///< "Sun et al. (2013)"
-  std::string verdict;  ///< what a flagged loop is, in one line
+  std::string verdict;  ///< meaning of a flagged loop, in one line
   AssessmentRequirements requirements;
   bool locates_cvs = false;       ///< Assessment::cvs has verdicts
   bool names_channels = false;    ///< Assessment::flagged_channels

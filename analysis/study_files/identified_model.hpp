@@ -19,7 +19,7 @@ struct IdentifiedChannel {
   StepResponseFit fit;
   double asymmetry;   ///< StepResponse::asymmetry of the CV
   double rms_error;   ///< under the step, in the unit of the CV
-  std::string doubt;  ///< what speaks against it, a sentence; empty: nothing
+  std::string doubt;  ///< the reason against it, a sentence; empty: none
 };
 
 /// What a step test of the plant of a study gives.

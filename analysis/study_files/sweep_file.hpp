@@ -11,7 +11,7 @@ namespace mpm {
 /// One study of a sweep: the base study, or the base study with one choice made otherwise.
 struct SweepVariant {
   std::string choice;  ///< which open choice; empty for the base study
-  std::string value;   ///< what it is here, for people
+  std::string value;   ///< its value in this variant, for people
   Study study;         ///< `source` is the whole text of this variant, so that its archive stands alone
 };
 

@@ -40,7 +40,7 @@ struct TableCell {
   std::string cv;  ///< empty for a quantity of the loop
   std::string quantity;
   std::optional<double> thesis = {};        ///< its number, or
-  std::optional<std::string> verdict = {};  ///< what it says in words; both none: an empty cell
+  std::optional<std::string> verdict = {};  ///< its verdict in words; both none: an empty cell
   std::string mv = {};                      ///< of a quantity of a channel
 };
 
@@ -60,7 +60,7 @@ struct ThesisTable {
   bool figure = false;  ///< figures and tables have numbers of their own
   int chapter = 0;
   std::string title;
-  std::string note;                      ///< what was chosen where the thesis gives no numbers; may be empty
+  std::string note;                      ///< choices for numbers that the thesis does not give; may be empty
   std::map<std::string, Study> studies;  ///< by the name of the variant; "" is the study as it is
   std::vector<std::string> heads;        ///< of the columns
   std::vector<TableRow> rows;

@@ -19,7 +19,8 @@ OptionKeys transfer_function_keys(const std::string& input, const std::string& p
 /// A transfer function as a table has it.
 struct WrittenTransferFunction {
   TransferFunction function;
-  double step_error = 0.0;  ///< what its parameters leave of step coefficients, as a share of the largest
+  double step_error = 0.0;  ///< largest error of its parameters in the step coefficients, as a share of the
+                            ///< largest coefficient
 };
 
 /// The transfer function in these keys of a table.

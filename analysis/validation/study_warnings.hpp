@@ -14,7 +14,7 @@ namespace mpm {
 struct StudyWarning {
   std::string key;     ///< of the study file: "controller.sample_time"
   std::string found;   ///< one clause with numbers and units
-  std::string advice;  ///< one clause: what to do, or what it means when it is meant so
+  std::string advice;  ///< one clause: what to do, or the consequence if it is intended
 };
 
 /// "KEY: FOUND; ADVICE"

@@ -15,7 +15,7 @@ struct RunningProgram {
       : talk(place, command, time_limit) {}
 
   ProgramTalk talk;
-  bool is_new = true;        ///< nobody has asked it anything
+  bool is_new = true;        ///< it has not been asked yet
   std::string context = {};  ///< that it was told last; empty: none
 };
 

@@ -76,7 +76,7 @@ class LoopMemory {
 
   /// How the answers of a method are kept.
   struct Kept {
-    std::string name = {};                 ///< its own with what else decides on them; empty: not at all
+    std::string name = {};  ///< its own, with everything else that the answers depend on; empty: not kept
     std::optional<double> threshold = {};  ///< by which their flags are made anew
   };
   using NamedAnswers = std::vector<std::pair<std::string, std::string>>;

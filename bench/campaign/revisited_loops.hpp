@@ -27,7 +27,7 @@ struct RevisitedLoops {
   const Study& study;                ///< of the experiments
   const Study* calibration;          ///< of the calibration loops; null: none is wanted
   std::vector<std::string> methods;  ///< that runners assess with
-  StorePolicy calibration_store;     ///< what a calibration loop that is run again keeps
+  StorePolicy calibration_store;     ///< data that a calibration loop keeps when it is run again
   /// Of a key. Keys of experiments come in ascending order of the index.
   std::function<LoopPlace(std::int64_t key)> place;
   /// What is kept of a loop. `runner` has the methods; what it does is a function of the loop alone. A record

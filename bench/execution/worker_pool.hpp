@@ -22,7 +22,7 @@ enum class TaskEnd : std::int64_t {
 struct TaskResult {
   std::int64_t id;
   TaskEnd end;
-  std::string bytes;  ///< the answer, or what is known of the end of the worker
+  std::string bytes;  ///< the answer, or the reason why the worker ended
 };
 
 /// Worker processes that answer requests, each one at a time.

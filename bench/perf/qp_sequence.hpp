@@ -15,7 +15,7 @@ struct QpSequence {
   std::string problem;    ///< "moves" (6.20) or "targets" (6.19)
   std::string slack;      ///< "per-sample" or "per-cv", the slack form of the controller
   std::string loop;       ///< the loop that it was recorded in, see recorded_sequences()
-  std::string loop_text;  ///< what happens in that loop, one line for people
+  std::string loop_text;  ///< events of that loop, one line for people
   std::shared_ptr<const QpStructure> structure;
   std::vector<QpData> data;  ///< one a sample
 

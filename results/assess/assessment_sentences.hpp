@@ -20,7 +20,7 @@ struct AssessmentText {
   RecordVerdictText verdict;
   std::vector<std::string> further = {};  ///< of controller and candidates
   std::vector<std::string> trust = {};    ///< how far to trust it
-  std::vector<std::string> repair = {};   ///< what the record tells of the channel, and of others
+  std::vector<std::string> repair = {};   ///< evidence of the record on the channel, and on others
 };
 
 AssessmentText assessment_text(const RecordAssessment& assessment);

@@ -84,7 +84,7 @@ struct Cell {
   Cell&& toned(Tone as) &&;
 
   std::variant<std::string, Number> content;  ///< words; empty ones are nothing
-  std::string hover = {};                     ///< what a page says where a mouse rests: text
+  std::string hover = {};                     ///< text that a page shows when the mouse rests on it
   std::string mark = {};                      ///< right behind the content
   std::string note = {};                      ///< words: small and below on a page; a text has no room for it
   Tone tone = Tone::plain;
@@ -189,7 +189,7 @@ struct Document {
   std::string footer = {};   ///< of the page
   std::string version = {};  ///< of the program that made the numbers: text
   std::vector<Section> sections = {};
-  std::string lead_html = {};   ///< what the page has below the lead
+  std::string lead_html = {};   ///< content of the page below the lead
   std::string aside_html = {};  ///< beside the body where there is room, below it elsewhere
 };
 

@@ -52,7 +52,7 @@ inline constexpr double kPanelWidth = 420;  ///< pixels; text is 12 pixels high
 /// One plot: made by PanelScript, drawn by draw_panels() and draw_figure().
 struct Panel {
   std::string title;                                ///< label
-  std::string description;                          ///< what it shows, for people who do not see it
+  std::string description;                          ///< description for people who cannot see it
   double height = 300, width = kPanelWidth;         ///< pixels; in a grid all are kPanelWidth wide
   std::string data;                                 ///< data blocks of gnuplot
   std::string commands;                             ///< the plot itself, in gnuplot's language

@@ -17,8 +17,8 @@ struct RecordColumns {
   std::vector<std::vector<std::string>> columns;  ///< [column][row]
   std::vector<std::size_t> lines;                 ///< in the file, of each row
   std::vector<std::string> units;                 ///< of the columns, where a row below the heading has them
-  std::vector<std::string> warnings;              ///< what was made of the file that needs a look
-  std::map<std::string, std::string> left_out;    ///< what the file has beside columns, and why it is none
+  std::vector<std::string> warnings;              ///< assumptions about the file that need a look
+  std::map<std::string, std::string> left_out;    ///< content of the file that is no column, and why
 
   std::size_t rows() const { return lines.size(); }
   /// The cell as a number as the file writes them; none when it is not one.

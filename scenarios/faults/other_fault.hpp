@@ -63,7 +63,7 @@ struct OtherFault {
   Eigen::Index variable;  ///< place of the CV, MV or MD
   double size = kNaN;
   double jump = 0.0;   ///< J of a sticking valve, MV unit
-  double start = 0.0;  ///< of a valve that sticks from the first sample on: where it stands (StickyValve)
+  double start = 0.0;  ///< position of a valve that sticks from the first sample on (StickyValve)
 
   friend bool operator==(const OtherFault& a, const OtherFault& b);
 };
@@ -107,7 +107,7 @@ enum class FaultEffect : std::int8_t {
   valve,         ///< a ValveStem follows the signal of an MV
   md_error,      ///< something is added to the measurement of an MD
   limit,         ///< both soft limits of a CV move in the controller
-  hold,          ///< an MV stays where it is, and nobody tells the controller
+  hold,          ///< an MV stays where it is, unknown to the controller
 };
 
 /// What the range of a size is in parts of; 1 where a loop has none.

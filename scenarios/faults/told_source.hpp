@@ -15,10 +15,10 @@ enum class ToldSource : std::int8_t {
   mpm = 1,
   ud = 2,
   mpm_ud = 3,
-  other = 4,   ///< an operator, a limit, or nobody says what
+  other = 4,   ///< an operator, a limit, or unknown
   sensor = 5,  ///< of a CV or an MD
   valve = 6,
-  data = 7,  ///< the record is not what was measured
+  data = 7,  ///< the record differs from the measurements
 };
 
 template <>

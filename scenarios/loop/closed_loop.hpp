@@ -23,7 +23,7 @@ struct SolverStatistics {
   std::int64_t steps = 0;
   std::int64_t iterations = 0;
   std::int64_t fallbacks = 0;         ///< problems whose answer is Ipopt's (CertifiedSolver)
-  double largest_kkt_residual = 0.0;  ///< NaN: of answers that nobody can certify
+  double largest_kkt_residual = 0.0;  ///< NaN: for solutions without a certificate
 
   void add(const SolverStatistics& other);
 };
@@ -90,7 +90,7 @@ struct LoopFaults {
 
   std::optional<Valve> valve = {};
   std::optional<StuckSensor> stuck = {};  ///< shows what it measured at this sample
-  std::optional<Hold> hold = {};          ///< the MV stays where it is, and the record says so
+  std::optional<Hold> hold = {};          ///< the MV stays where it is, and the record shows it
   std::optional<LimitShift> limit = {};
 };
 

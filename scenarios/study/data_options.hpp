@@ -64,7 +64,7 @@ struct DataOptions {
   RecordStart start = RecordStart::automatic;
   double most_missing = 0.3;            ///< share of the samples of a CV; beyond it the record is refused
   std::vector<std::string> candidates;  ///< columns of signals that the model does not know
-  GapFill fill = GapFill::none;         ///< what methods find where a CV is missing
+  GapFill fill = GapFill::none;         ///< value of a missing CV for the methods
   std::vector<std::string> period;      ///< two time stamps; empty: the whole file
   std::vector<std::string> benchmark;   ///< two time stamps, "found" or "none"; empty: none is named
 

@@ -14,7 +14,7 @@ namespace mpm {
 struct WindowRule {
   Eigen::Index window = 0;  ///< samples
   Eigen::Index step = 0;    ///< samples distance between the starts of two windows
-  double nu = 0.01;         ///< share of what a machine learns from that it leaves outside
+  double nu = 0.01;         ///< share of the training samples that may lie outside
   double share = 0.5;       ///< share of the windows of a record that must lie outside
 
   /// Of a record of this many samples.

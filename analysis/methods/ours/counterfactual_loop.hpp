@@ -110,7 +110,7 @@ class CounterfactualLoop {
 
   const Study& study_;
   std::shared_ptr<const LearntModel> learnt_;
-  TransferMatrix plant_;  ///< G0, or what the benchmark has shown of the plant
+  TransferMatrix plant_;  ///< G0, or the plant as the benchmark shows it
   QpSolverFactory factory_;
   Eigen::MatrixXd y_set_, dither_;
   Eigen::MatrixXd nominal_d_;             ///< under which `nominal_` was simulated

@@ -17,7 +17,7 @@ struct GrowingMismatch {
   std::size_t mismatch;  ///< its place among the responses
   TruncatedNormal size;  ///< the posterior of its size, with the evidence as its mass
   double best_size;
-  double onset, end;      ///< samples: where it begins, and where it is whole
+  double onset, end;      ///< samples: its onset, and the end of its growth
   double log_likelihood;  ///< at the best size, onset and end
 };
 
