@@ -47,7 +47,7 @@ struct ActiveSetOptions {
 /// that H leaves open, provided that the proximal weight is small against the costs (Mangasarian & Meyer,
 /// SIAM J. Control Optim. 17 (1979) 745-752).
 ///
-/// `solve` allocates nothing, but for the first program that is tried in other units. Solvers of different
+/// `solve` allocates nothing, except for the first program that is tried in other units. Solvers of different
 /// threads share nothing but the structure.
 class ActiveSetSolver final : public QpSolver {
  public:

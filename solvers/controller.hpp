@@ -54,7 +54,7 @@ class Controller {
   virtual const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
                                   const Eigen::Ref<const Eigen::VectorXd>& d) = 0;
 
-  /// MVs that act from the last step on in place of those of its move, because something is added to them
+  /// MVs that act from the last step on instead of those of its move, because something is added to them
   /// that the controller knows, such as a test signal. Throws InputError as reset().
   virtual void set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) = 0;
 

@@ -24,7 +24,7 @@ namespace mpm {
 /// after those of the CVs.
 ///
 /// Hessian and rows are constant; gradient and limits are affine in (free response, u(k-1), u_target, y_set,
-/// y(k)), but for v(0) where a move limit and an MV limit meet.
+/// y(k)), except for v(0) where a move limit and an MV limit meet.
 class MpcQp {
  public:
   /// `options` must be valid for the model (see MpcOptions::validate). Throws InputError when they do
@@ -45,7 +45,7 @@ class MpcQp {
     cv_soft_ = soft;
   }
 
-  /// MVs that do not move: v_j(i) = 0 in the place of their limits.
+  /// MVs that do not move: v_j(i) = 0 instead of their limits.
   void set_held(std::vector<Eigen::Index> mvs) { held_ = std::move(mvs); }
 
  private:

@@ -79,7 +79,7 @@ Judgement judge(const Study& study, const ExperimentRecord& record, const Assess
 /// FaultCost::has_impact(). It does not depend on any method.
 bool has_impact(const DiagnosisOptions& options, const ExperimentRecord& record);
 
-/// The experiments over which the study counts what a method says of the source of a fault: those that it
+/// The experiments over which the study counts what a method says about the source of a fault: those that it
 /// flags, or all with a verdict (diagnosis.source_population).
 bool in_source_population(const Study& study, const AssessmentRecord& assessment);
 

@@ -13,7 +13,7 @@ namespace mpm {
 /// The transfer functions of the linear plant of an experiment, after its onset.
 TransferMatrix true_plant(const Study& study, const ExperimentDraw& draw);
 
-/// The loop of the experiment under the controller of the study with another model: `model` in the place of
+/// The loop of the experiment under the controller of the study with another model: `model` instead of
 /// Study::plant. The plant, its faults, which are there from the first sample on, the noise and all other
 /// signals are those of the experiment.
 Trajectory loop_with_model(const Study& study, const TransferMatrix& model, ExperimentDraw draw,

@@ -17,7 +17,7 @@
 
 namespace mpm {
 
-/// What a method says of the experiments of one kind with a fault.
+/// What a method says about the experiments of one kind with a fault.
 struct KindFindings : Endings {
   ExperimentKind kind = ExperimentKind::healthy;
   Rate flagged;  ///< of those with a verdict; of the chain: with impact

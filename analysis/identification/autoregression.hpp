@@ -10,7 +10,7 @@ namespace mpm {
 ///
 ///   e(k) = c + a_1 e(k-s) + ... + a_p e(k-ps) + w(k)
 ///
-/// with the spacing s of its samples (sample_spacing()), which is 1 but for a CV of an analyser.
+/// with the spacing s of its samples (sample_spacing()), which is 1 except for a CV of an analyser.
 ///
 /// | symbol | member     | shape            | meaning                                                   |
 /// |--------|------------|------------------|-----------------------------------------------------------|

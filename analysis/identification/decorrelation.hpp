@@ -51,10 +51,10 @@ struct Decorrelation {
 /// gives L_i = q^-i. Filtered inputs are nearly dependent, with singular values of all sizes, so the last
 /// bits decide which columns a pivoted factorisation takes. The regression is therefore a ridge
 /// regression, on filtered inputs of norm 1, that leaves a direction with singular value s by the share
-/// r^2/(s^2 + r^2), r = 1e-10 of the norm of them all: the orthogonal projection, but for directions that are
-/// rounding. Without inputs the residuals are the deviations from the means. The model of a search without a
-/// usable status serves as it is: its residuals are those of a stable model, though perhaps not of the best
-/// one; they are counted.
+/// r^2/(s^2 + r^2), r = 1e-10 of the norm of them all: the orthogonal projection, except for directions that
+/// are rounding. Without inputs the residuals are the deviations from the means. The model of a search
+/// without a usable status serves as it is: its residuals are those of a stable model, though perhaps not of
+/// the best one; they are counted.
 ///
 /// | symbol | name    | shape | meaning                          |
 /// |--------|---------|-------|----------------------------------|

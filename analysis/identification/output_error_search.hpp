@@ -19,7 +19,7 @@ struct OutputErrorMinimum {
 /// Minimises sum e^2 from `start`, as `search_prediction_error` does: the same steps of the
 /// Levenberg-Marquardt method (Ceres's scaling, radius and tolerances), to rounding. They are found from the
 /// products J'J of the gradients, all of which follow from those of 1/F_j u_j and 1/F_j^2 B_j u_j by shifts
-/// (`LagSums`), in place of an orthogonal factorisation of J.
+/// (`LagSums`), instead of an orthogonal factorisation of J.
 OutputErrorMinimum search_output_error(OutputErrors& errors, const OutputErrorCoefficients& start,
                                        const OutputErrorSearch& search);
 

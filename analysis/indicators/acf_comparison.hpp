@@ -60,7 +60,7 @@ struct AcfComparisonOptions {
 
 /// What one autocorrelation function says.
 struct AcfFeatures {
-  /// Lag from which on |r| stays below the decay level, but for rises that chance may make (`decay_lag`);
+  /// Lag from which on |r| stays below the decay level, except for rises that chance may make (`decay_lag`);
   /// infinite when it does not within the lags, NaN without a function. Unit: samples.
   double decay_lag = kNaN;
   AcfOscillation oscillation;

@@ -18,7 +18,7 @@ enum class Oscillation : std::int8_t {
 template <>
 inline constexpr auto kWords<Oscillation> = word_list("undetermined", "absent", "present");
 
-/// What the autocorrelation function says of an oscillation.
+/// What the autocorrelation function says about an oscillation.
 struct AcfOscillation {
   Oscillation verdict = Oscillation::undetermined;
   /// Decay ratio R of the function over half a period, 0 ... about 1; NaN without two minima and a maximum.

@@ -26,7 +26,7 @@ inline double mpm_threshold(const Study& study) {
   return study.assessment.of<ChainOptions>().mpm_threshold;
 }
 
-/// What the chain says of one CV of a named scenario, in which several CVs may be affected.
+/// What the chain says about one CV of a named scenario, in which several CVs may be affected.
 struct CvDiagnosis {
   bool flagged = false;                    ///< Ivar_diag lies outside the band of impact
   FaultSource source = FaultSource::none;  ///< of a flagged CV: mpm when I_MPM exceeds its threshold
@@ -48,7 +48,7 @@ struct FaultsAlone {
   double dominance_mpm = kNaN;
 };
 
-/// What the chain of the thesis says of one closed loop (appendix A2).
+/// What the chain of the thesis says about one closed loop (appendix A2).
 ///
 /// | symbol     | member     | shape | definition                                            |
 /// |------------|------------|-------|-------------------------------------------------------|

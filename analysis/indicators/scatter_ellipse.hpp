@@ -18,7 +18,7 @@ namespace mpm {
 /// | a      | major  | square root of the largest eigenvalue | that of x and y |
 /// | b      | minor  | square root of the smallest eigenvalue | the same |
 ///
-/// The angle has the sign of the correlation: with y - y0 in place of y0 - y (5.4) it changes its sign, and
+/// The angle has the sign of the correlation: with y - y0 instead of y0 - y (5.4) it changes its sign, and
 /// magnitudes stay. Where a = b it says nothing.
 struct PrincipalAxes {
   double angle = 0.0;

@@ -32,7 +32,7 @@ bool begins_at(const Eigen::VectorXd& rest, const Eigen::MatrixXd& signals) {
   return ((signals.col(0) - rest).cwiseAbs().array() <= kAtRest * deviation.array()).all();
 }
 
-/// The rows of `recorded` that were recorded, and `otherwise` in place of the others.
+/// The rows of `recorded` that were recorded, and `otherwise` instead of the others.
 Eigen::MatrixXd where_recorded(const Eigen::MatrixXd& recorded, const Eigen::MatrixXd& otherwise) {
   return recorded.array().isNaN().select(otherwise, recorded);
 }

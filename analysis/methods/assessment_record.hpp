@@ -44,7 +44,7 @@ struct NumberPlace {
 /// | cv_score        | cv      | locate CVs: CvAssessment::score                          |
 /// | cv_source       | cv      | tell sources: FaultSource of a flagged CV or the worst one |
 /// | channel_flagged | channel | name channels: 1 for a channel that is named, 0 for others |
-/// | mismatch_parameter | channel | name mismatches: Assessment::named_mismatch in the place of its channel |
+/// | mismatch_parameter | channel | name mismatches: Assessment::named_mismatch instead of its channel |
 /// | mismatch_size, mismatch_lower, mismatch_upper | channel | the same, NaN elsewhere           |
 /// | named_candidate | loop    | name candidates: Assessment::named_candidate; NaN: none           |
 class AssessmentForm {

@@ -303,7 +303,7 @@ Json channel_json(const Channel& channel, const PlantModel& plant) {
           plant.mvs[static_cast<std::size_t>(channel.mv)].name};
 }
 
-/// The three lists of what a method says of each CV.
+/// The three lists of what a method says about each CV.
 void add_cvs_json(const Assessment& assessment, const PlantModel& plant, bool tells_sources, Json& json) {
   for (std::size_t cv = 0; cv < plant.cvs.size(); ++cv) {
     const CvAssessment of_cv = cv < assessment.cvs.size() ? assessment.cvs[cv] : CvAssessment{};

@@ -65,12 +65,12 @@ nlohmann::ordered_json answer_json(const Assessment& assessment, const PlantMode
 /// | flagged        | true, false; the only one that must be there                                     |
 /// | score          | number, larger is worse; 1 or 0 by `flagged` without one                         |
 /// | cv, source     | the CV that is worst, by name; its source: "none", "mpm", "ud", "mpm_ud", "other" |
-/// | cv_flagged, cv_score, cv_source | lists of ny in place of these two, null: nothing is said        |
+/// | cv_flagged, cv_score, cv_source | lists of ny instead of these two, null: nothing is said       |
 /// | channels       | [["y1", "u2"], ...]: channels of the model that are named                        |
 /// | mismatch       | {"channel", "parameter", "size", "lower", "upper"}; the last three may be absent |
 /// | candidate      | number of the logged signal that drives the disturbance, from 1                  |
 /// | numbers        | {"name": value}: those of the description; lists by CV, lists of lists by channel |
-/// | error, not_applicable | in the place of all others: why there is no verdict                       |
+/// | error, not_applicable | instead of all others: why there is no verdict                          |
 ///
 /// A key that the description does not say (channels of a method that names none) and an unknown one are
 /// refused: InputError, whose text begins with `place`.

@@ -43,8 +43,8 @@ Json describe_content(const MethodProgram& program) {
           {"options", Json::parse(program.options)}};
 }
 
-/// What a program says of itself, how it reads signals, and the methods of this program whose answers it is
-/// told with each loop.
+/// What a program says about itself, how it reads signals, and the methods of this program whose answers it
+/// is told with each loop.
 struct ProgramDescription {
   MethodDescription method;
   SignalForm signals = SignalForm::lists;
@@ -116,7 +116,7 @@ void take_probabilities(const JsonEntry& entry, MethodDescription& method) {
   }
 }
 
-/// Reads what a program says of itself.
+/// Reads what a program says about itself.
 void read_description(const JsonEntry& entry, ProgramDescription& description) {
   MethodDescription& method = description.method;
   AssessmentRequirements& needs = method.requirements;
@@ -184,7 +184,7 @@ ProgramDescription description_of(const MethodProgram& program, WaitingPrograms&
   return description;
 }
 
-/// One thread's or worker's own, but for the process that it asks.
+/// One thread's or worker's own, except for the process that it asks.
 class ProgramMethod final : public AssessmentMethod {
  public:
   ProgramMethod(const MethodProgram& program, const ProgramDescription& description,

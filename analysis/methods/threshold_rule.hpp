@@ -7,7 +7,7 @@
 #include "analysis/methods/assessment_record.hpp"
 
 // Methods from outside with MethodProgram::threshold_option: an answer with another threshold is the same
-// answer, but for
+// answer, except for
 //
 //   flagged = score > threshold
 //

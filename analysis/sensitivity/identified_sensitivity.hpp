@@ -37,7 +37,7 @@ struct IdentifiedRow {
 /// T0 from a record of a closed loop.
 struct IdentifiedSensitivity {
   /// [reference] ny x samples; column l-1 holds the outputs l samples after a unit step in that reference:
-  /// the layout of `NominalSensitivity::step_response`, a reference in the place of an active limit. NaN in
+  /// the layout of `NominalSensitivity::step_response`, a reference instead of an active limit. NaN in
   /// the row of a CV without a usable model.
   std::vector<Eigen::MatrixXd> step_response;
   std::vector<IdentifiedRow> rows;  ///< one a CV

@@ -33,7 +33,7 @@ namespace mpm {
 /// |--------|---------------------------------------------------------------------------|--------------|
 /// | x      | states of the model's channels from the free MVs to the active CVs         | n            |
 /// | L      | samples of which inputs are still on their way                            |              |
-/// | b      | y - y_sim of the active CVs; 0 but for the channels that differ           | m            |
+/// | b      | y - y_sim of the active CVs; 0 except for the channels that differ           | m            |
 ///
 /// Channels with step coefficients are taken as the transfer functions that were fitted to these, in model
 /// and plant: their own states would be as many as there are coefficients.

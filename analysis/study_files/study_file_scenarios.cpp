@@ -28,7 +28,7 @@ OptionKeys joined(OptionKeys keys, const OptionKeys& others) {
   return keys;
 }
 
-/// Another transfer function in the place of a channel.
+/// Another transfer function instead of a channel.
 OptionKeys other_channel_keys() {
   return transfer_function_keys(
       "input", "poles with negative real parts; one pole may be 0 if the model of the CV has one");

@@ -16,7 +16,7 @@ namespace mpm {
 /// The name under which a row refers to the study without a variant, where it names a benchmark.
 inline constexpr std::string_view kStudyItself = "study";
 
-/// What a column says of all its cells; empty: the row says it.
+/// What a column says about all its cells; empty: the row says it.
 struct TableColumn {
   std::string head, cv, mv, quantity;
 };

@@ -62,7 +62,7 @@ double deviation_of(const Eigen::ArrayXd& values) {
   return std::sqrt((values - values.mean()).square().mean());
 }
 
-/// Does it never move, but for rounding of what it may move?
+/// Does it never move, except for rounding of what it may move?
 bool is_constant(const RecordedVariable& variable) {
   const Eigen::ArrayXd values = variable.present();
   const double width = variable.is_limited() ? variable.upper - variable.lower : 0.0;

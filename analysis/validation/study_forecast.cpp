@@ -46,7 +46,7 @@ WorldWidths world_widths(double p, double loops, int worlds, double confidence) 
           width(static_cast<double>(worlds) / kWorldCorrelation * shrink)};
 }
 
-/// Puts the widths of the intervals of worlds in the place of those of independent loops.
+/// Replaces the widths of the intervals of independent loops by those of worlds.
 void widen_for_worlds(const Study& study, StudyForecast& forecast) {
   forecast.worlds = study.world->count;
   const double confidence = study.aggregate.confidence;

@@ -61,7 +61,7 @@ int add_object(dl_phdr_info* object, std::size_t, void* to) {
   return 0;
 }
 
-/// What Linux says of the first processor: its name and what it can do.
+/// What Linux says about the first processor: its name and what it can do.
 std::string first_processor() {
   std::ifstream all("/proc/cpuinfo");
   std::string line, text;

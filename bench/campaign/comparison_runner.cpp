@@ -52,8 +52,8 @@ std::vector<std::size_t> places_of_others(const Campaign& campaign, const Assess
   return places;
 }
 
-/// What further methods say of a record, one after the other in the order of the index; nothing of a loop
-/// that they were not asked about.
+/// What further methods say about a record, one after the other in the order of the index; nothing about a
+/// loop that they were not asked about.
 using Answers = std::function<std::vector<AssessmentRecord>(const ExperimentRecord&)>;
 
 /// The answers in records of the same experiments, or of some of them.
@@ -68,7 +68,7 @@ Answers answers_in(const RecordRange& assessed) {
   };
 }
 
-/// Puts the answers of further methods behind those of the campaign, in the place of those that it has of
+/// Puts the answers of further methods behind those of the campaign, and replaces those that it has of
 /// them; `begin` gives them for one way through its records.
 void append(Campaign& campaign, const AssessmentForms& forms, const std::function<Answers()>& begin,
             const std::string& command) {

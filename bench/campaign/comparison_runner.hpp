@@ -49,8 +49,8 @@ ComparedLoops compared_loops(const Campaign& campaign, const std::vector<std::st
                              const std::optional<std::int64_t>& experiments);
 
 /// Methods that assess the experiments with status ok, and the calibration loops; the same answer for any
-/// number of jobs, and however often it was stopped, but for the processor times. A loop that was not stored
-/// is run again by the solver of the campaign (run_revisited).
+/// number of jobs, and however often it was stopped, except for the processor times. A loop that was not
+/// stored is run again by the solver of the campaign (run_revisited).
 class Comparison {
  public:
   /// On these loops of the campaign, which must outlive run(). Errors: as CampaignLoops::open().
@@ -99,7 +99,7 @@ BlindLoops blind_loops_in(const ShardStore& store, std::size_t count);
 /// Their benchmarks in worlds, likewise.
 BlindLoops blind_benchmarks_in(const ShardStore& store, std::size_t count);
 
-/// Puts verdicts from outside behind the answers of the methods that the campaign has, in the place of those
+/// Puts verdicts from outside behind the answers of the methods that the campaign has, and replaces answers
 /// of the same name.
 void add_verdicts(Campaign& campaign, OutsideVerdicts verdicts, const std::string& command);
 

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// The first experiments of a study, run and timed in the place of all of them.
+/// The first experiments of a study, run and timed instead of all of them.
 struct StudyPilot {
   Campaign campaign;
   StudyForecast forecast;

@@ -54,7 +54,7 @@ std::string suite_of(const CheckBoardArguments& options) {
   return options.suite.empty() ? board_heading(options.board).suite : options.suite;
 }
 
-/// What the file says of its methods, without a place among others: nobody has run them again.
+/// What the file says about its methods, without a place among others: nobody has run them again.
 Section stated_section(const Leaderboard& board) {
   Section section = standing_section(board);
   section.title = "What the file says";

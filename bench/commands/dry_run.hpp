@@ -13,7 +13,7 @@ class App;
 
 namespace mpm {
 
-// What a command says of its work: instead of it (--dry-run), or beside it (--verbose).
+// What a command says about its work: instead of it (--dry-run), or beside it (--verbose).
 
 void add_dry_run(CLI::App& app, bool& dry_run);
 /// The same of a command that says no time.

@@ -41,7 +41,7 @@ struct RunOptions {
   StorePolicy store = StorePolicy::flagged;      ///< which loops are kept
   bool allow_unhealthy_basis = false;            ///< run although the basis case fails its self-check
   std::string archive = {};  ///< digest of the archive whose loops are assessed; empty: they are run
-  /// Makes for each worker what assesses its loops in the place of the methods of the study, which must have
+  /// Makes for each worker what assesses its loops instead of the methods of the study, which must have
   /// the same; what it does stands in the study (TrialPlan::judged). Empty: the methods see the whole loop.
   std::function<LoopAssessor()> assessor = {};
 
@@ -52,7 +52,7 @@ struct RunOptions {
   /// A shard is written when the last one is this old, in s, >= 0. A run that is killed loses as much at
   /// most, beside what is under way; with 2 s, ten hours make 18000 files, which a folder holds well.
   double shard_interval = 2.0;
-  /// Where loops, and what methods of this program say of them, are kept for the next run; null: nowhere.
+  /// Where loops, and what methods of this program say about them, are kept for the next run; null: nowhere.
   std::shared_ptr<const CacheFolder> cache = {};
   bool fresh = false;  ///< what is kept there is made again
   /// Of methods from outside, by name: the option that their scores are compared with

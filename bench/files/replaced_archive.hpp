@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// What becomes of a file in the place of an output that cannot be read as an archive.
+/// What becomes of a file at the path of an output if it cannot be read as an archive.
 enum class Unreadable { kept, replaced };
 
 /// Refuses to replace the archive of another study or seed, and, where `unreadable` says so, a file that is

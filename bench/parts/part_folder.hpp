@@ -19,8 +19,8 @@ struct CampaignPart {
   std::optional<PartNumber> number = {};  ///< which part it is of all loops of the campaign
 };
 
-/// The folder of a part: its shards, and `campaign.json`, which says of what it is a part, so that parts
-/// alone make an archive (docs/running.md).
+/// The folder of a part: its shards, and `campaign.json`, which says to which campaign it belongs, so that
+/// parts alone make an archive (docs/running.md).
 struct PartFolder {
   std::filesystem::path path;
   Study study;             ///< as study_to_run() gave it

@@ -38,7 +38,7 @@ class ShardFolder {
 /// The shards in a folder, whole or not, in the order in which they were written; none when it is not there.
 std::vector<std::filesystem::path> shards_in(const std::filesystem::path& folder);
 
-/// The file in a folder of shards that says of which campaign they are (bench/parts/part_folder).
+/// The file in a folder of shards that says to which campaign they belong (bench/parts/part_folder).
 inline constexpr const char* kCampaignDescription = "campaign.json";
 
 /// Where the shards of an output lie: beside it.

@@ -32,7 +32,7 @@ constexpr std::array<std::array<FirstOrderEntry, 5>, 7> kModel{{
 // clang-format on
 
 // clang-format off
-/// Eq. 2.25 and 4.18: outputs y1, y2 and y7 of eq. 6.18, but for the dead time of y3-u3, 19 min here.
+/// Eq. 2.25 and 4.18: outputs y1, y2 and y7 of eq. 6.18, except for the dead time of y3-u3, 19 min here.
 constexpr std::array<std::array<FirstOrderEntry, 3>, 3> kReducedModel{{
   //      u1              u2              u3
   {{{4.05, 27, 50}, {1.77, 28, 60}, {5.88, 27, 50}}},  // y1

@@ -15,7 +15,7 @@ namespace mpm {
 PlantModel shell_fractionator_7x3();
 
 /// P2, the 3 x 3 part that chapters 2, 4 and 5 control by setpoints: eq. 2.25 and 4.18, times in minutes. Its
-/// y3 is the y7 of eq. 6.18, with a dead time of 19 min from u3 in the place of none.
+/// y3 is the y7 of eq. 6.18, with a dead time of 19 min from u3 instead of none.
 PlantModel shell_fractionator_3x3();
 
 /// P8, a high-purity binary distillation column in LV configuration (Skogestad & Postlethwaite), eq. 4.15:
@@ -33,7 +33,7 @@ PlantModel distillation_column();
 ///   G0 = --------------------.
 ///        305 s^2 + 40 s + 1
 ///
-/// The plant with mismatch of table 5.2 has 18.25 in the place of 3.04.
+/// The plant with mismatch of table 5.2 has 18.25 instead of 3.04.
 PlantModel siso_plant();
 
 /// The pilot column of Ogunnaike and Ray for ethanol and water, with a side stream, 3 CVs x 3 MVs x 2 MDs

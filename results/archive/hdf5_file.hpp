@@ -147,7 +147,7 @@ class Hdf5File {
   /// An empty file in memory. `name` is for messages.
   static Hdf5File create(const std::string& name);
 
-  /// An empty file in the place of the one at `path`, which must be there; finish() ends it.
+  /// An empty file instead of the one at `path`, which must be there; finish() ends it.
   static Hdf5File create_at(const std::filesystem::path& path, const std::string& name);
 
   /// Opens a file for reading. Throws ArchiveError when it is no HDF5 file, not a whole one, or damaged.

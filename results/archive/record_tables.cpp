@@ -276,7 +276,7 @@ struct CostLens {
   }
 };
 
-/// What faults cost in the worlds of a study, but for the ratios of the variances: ivar_basis.
+/// What faults cost in the worlds of a study, except for the ratios of the variances: ivar_basis.
 std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
   using C = FaultCost;
   const std::string same =
@@ -385,7 +385,7 @@ std::vector<Row<LoopConditions>> condition_rows() {
               "NaN: not known", &C::mv_at_limit)};
 }
 
-/// What each method says of a loop.
+/// What each method says about a loop.
 std::vector<Row<AssessmentRecord>> verdict_rows(const Study& study) {
   using A = AssessmentRecord;
   return {

@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-// What a file says of a number to people and programs.
+// What a file says about a number to people and programs.
 
 /// A word in the form of files: with '_' for blanks, which separate the words of an attribute.
 std::string flag_word(std::string text);

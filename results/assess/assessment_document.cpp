@@ -54,7 +54,7 @@ std::vector<double> as_recorded(const RecordAssessment& of, const std::string& n
   return {columns.begin(), columns.end()};
 }
 
-/// Time with stamps in place of numbers, one at each whole number; what all stamps share at their end (":00")
+/// Time with stamps instead of numbers, one at each whole number; what all stamps share at their end (":00")
 /// is left out.
 Axis stamps_axis(const std::vector<std::string>& stamps, int steps) {
   constexpr double kRoom = 1.15;  // for the end of the last stamp

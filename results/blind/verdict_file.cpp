@@ -212,7 +212,7 @@ Json candidate_json(const VerdictLine& line) {
   return static_cast<std::int64_t>(*number);
 }
 
-/// The answer that a program would give in the place of this line.
+/// The answer that a program would give instead of this line.
 Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodDescription& method) {
   if (const std::string* const error = line.find("error"))
     return {{"error", cut_utf8(*error, kLongestReason)}};
@@ -281,7 +281,7 @@ MethodDescription description_of(const VerdictText& text, const std::string& nam
   return method;
 }
 
-/// What a file says of one loop: a line on it as a whole, and lines on its windows; null: none.
+/// What a file says about one loop: a line on it as a whole, and lines on its windows; null: none.
 struct LoopLines {
   const VerdictLine* whole = nullptr;
   std::vector<const VerdictLine*> windows = {};

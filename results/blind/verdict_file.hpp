@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// What somebody says of the loops of a blind export.
+/// What somebody says about the loops of a blind export.
 struct OutsideVerdicts {
   std::shared_ptr<const AssessmentForm> form;
   std::vector<AssessmentRecord> answers;   ///< of each record of the campaign, in their order

@@ -23,7 +23,7 @@ bool is_utf16(std::string_view bytes);
 /// Halves of characters are replaced by U+FFFD, and so is a last odd byte.
 std::string utf8_of_utf16(std::string_view bytes);
 
-/// The same with small letters in place of the capitals of ASCII.
+/// The same with small letters instead of the capitals of ASCII.
 std::string in_lower_case(std::string text);
 
 /// Without the blanks, tabs and carriage returns around it.

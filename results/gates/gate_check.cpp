@@ -20,7 +20,7 @@
 namespace mpm {
 namespace {
 
-/// "METHOD.QUESTION", but for what a campaign was compared by before it had other methods.
+/// "METHOD.QUESTION", except for what a campaign was compared by before it had other methods.
 BaselineChanges baseline_changes(const Campaign& campaign, const MethodChange& method,
                                  const VerdictChange& verdict) {
   const std::string question = verdict.question->key;

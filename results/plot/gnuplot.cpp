@@ -122,7 +122,7 @@ int run(std::string program, std::string script, const Redirection& streams,
   return end_of(child, program, patience);
 }
 
-/// What gnuplot says of its script, without the folder that is gone by the time somebody reads it.
+/// What gnuplot says about its script, without the folder that is gone by the time somebody reads it.
 std::string complaint(std::string text) {
   constexpr std::size_t kMost = 500;
   text.erase(text.find_last_not_of(" \n") + 1);

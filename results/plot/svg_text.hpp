@@ -14,7 +14,7 @@ struct SvgText {
 };
 
 /// The <svg> element of a drawing of gnuplot's terminal `svg`, without prologue: with a role and a
-/// description, unique ids, and <title> elements in place of the hypertexts, which would need a script.
+/// description, unique ids, and <title> elements instead of the hypertexts, which would need a script.
 std::string svg_element(const std::string& drawing, const SvgText& text);
 
 }  // namespace mpm

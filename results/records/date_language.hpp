@@ -16,7 +16,7 @@ const std::vector<const DateLanguage*>& date_languages();
 /// Such as "it" or "pt_BR".
 const std::vector<std::string>& language_names(const DateLanguage& language);
 
-/// A cell with English words in place of those of the language, by the first code page in which it can be
+/// A cell with English words instead of those of the language, by the first code page in which it can be
 /// read; empty: by none.
 std::string read_in(const DateLanguage& language, const std::string& cell,
                     const std::function<bool(const std::string&)>& reads);

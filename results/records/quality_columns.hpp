@@ -18,7 +18,7 @@ std::optional<std::size_t> quality_column_of(const RecordColumns& file, std::siz
 bool are_qualities(const RecordColumns& file, std::size_t column);
 
 /// The column that a historian has beside another one of a tag, as "AI101.SP" is beside "AI101.PV" and
-/// "AI101": that of the same name with `ending` in place of PV, SP or OP, or behind a point. None: there is
+/// "AI101": that of the same name with `ending` instead of PV, SP or OP, or behind a point. None: there is
 /// none.
 std::optional<std::size_t> column_beside(const RecordColumns& file, std::size_t column,
                                          const std::string& ending);

@@ -22,7 +22,7 @@ const Pen kWhiteBand{colour::kLightGrey, Dash::solid, Mark::none, 1.0};
 
 constexpr Eigen::Index kFewCvs = 3;  // of so many CVs all are drawn
 
-/// What the chain says of one loop, under its name.
+/// What the chain says about one loop, under its name.
 struct Loop {
   std::string id;
   std::string name;

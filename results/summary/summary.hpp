@@ -17,7 +17,7 @@ struct Unfinished {
 /// The results of a run: the study, whether the basis case is healthy, the measured numbers with their
 /// intervals beside the reported ones, which experiments failed or got a wrong verdict, and the methods side
 /// by side where there are several. `file` is the archive, for the commands that replay these. The summary of
-/// a campaign that is not finished says so first. As a text it is at most 100 columns wide but for the
+/// a campaign that is not finished says so first. As a text it is at most 100 columns wide except for the
 /// methods. Its data have all experiments instead of the first ones; docs/report.md lists the keys.
 /// `campaign` and `findings` must outlive it.
 Document summary_document(const Campaign& campaign, const StudyFindings& findings, const std::string& file,

@@ -38,7 +38,7 @@ std::string mv_name(const Study& study, Eigen::Index mv);
 /// min".
 std::string fault_text(const Study& study, const ExperimentDraw& draw);
 
-/// "experiment 12 (MPM): gain of y1/u2 x 0.45"; a named scenario has its name in place of the number.
+/// "experiment 12 (MPM): gain of y1/u2 x 0.45"; a named scenario has its name instead of the number.
 std::string experiment_title(const Study& study, const ExperimentDraw& draw);
 
 /// "0.62 (0.55 to 0.7)", without the brackets where the ends are not known; "at least 7.1" of an

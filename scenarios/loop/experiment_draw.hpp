@@ -54,7 +54,7 @@ struct ExperimentDraw {
   Onset onset = {};                              ///< of all faults but that of the tuning
   FaultScales scales = {};                       ///< those of the sizes above
   double noise_factor = 1.0;  ///< of the measurement noise (NoiseOptions::factor); no fault either
-  /// Whose noise and background the loop has, in place of its own: of loops that differ in nothing else.
+  /// Whose noise and background the loop has, instead of its own: of loops that differ in nothing else.
   std::optional<std::int64_t> noise_index = {};
   int world = kExactWorld;  ///< in which it takes place
 

@@ -218,7 +218,7 @@ std::vector<Eigen::Index> cvs_of(const std::vector<Disturbance>& disturbances) {
   return cvs;
 }
 
-/// Onto an MV in place of the CV, at the size at which the CV with the largest gain sees the drawn one.
+/// Onto an MV instead of the CV, at the size at which the CV with the largest gain sees the drawn one.
 void move_to_mv(const Study& study, ExperimentDraw& draw, RandomStream& stream) {
   const Eigen::Index mv = draw_from(mv_channels(study), stream).second;
   Disturbance& disturbance = draw.disturbances.front();

@@ -14,7 +14,7 @@
 
 namespace mpm {
 
-/// The loop of experiment `index` as its record shows it: y in place of the measurements, one thing after the
+/// The loop of experiment `index` as its record shows it: y instead of the measurements, one thing after the
 /// other, each only where `study.record` asks for it:
 ///
 /// 0. rows: with `sampling` and `shift` those of record_rows.hpp, exact (Trajectory::y_sampled), take the

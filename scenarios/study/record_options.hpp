@@ -18,7 +18,7 @@ enum class GapFill {
   linear,  ///< the straight line between the values on both sides of the gap
 };
 
-/// What stands in the place of a bad value.
+/// What replaces a bad value.
 enum class BadValue : std::int8_t {
   stuck = 0,      ///< the last good one
   off_scale = 1,  ///< one far off, the same throughout

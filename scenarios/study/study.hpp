@@ -200,7 +200,7 @@ struct ReportedValue {
   }
 };
 
-/// The nonlinear plant that is simulated in place of the linear model; the controller and y_sim keep the
+/// The nonlinear plant that is simulated instead of the linear model; the controller and y_sim keep the
 /// model.
 struct NonlinearSimulation {
   NonlinearModel model;

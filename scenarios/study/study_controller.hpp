@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// The controller of the study on its model, with this tuning in the place of the study's: the built-in one,
+/// The controller of the study on its model, with this tuning instead of the study's: the built-in one,
 /// whose solvers `factory` makes, or its program. Throws InputError when the tuning does not fit the model.
 std::unique_ptr<Controller> controller_of(const Study& study, const MpcOptions& tuning,
                                           const QpSolverFactory& factory);

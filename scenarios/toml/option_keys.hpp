@@ -23,8 +23,8 @@ class TomlTable;
 struct OptionKey;
 using OptionKeys = std::vector<OptionKey>;
 
-/// One key: what the manual says of it, in Markdown, and how it is read. Made by the functions of mpm::key.
-/// It refers to the options that it is read into, which must live while it is read.
+/// One key: what the manual says about it, in Markdown, and how it is read. Made by the functions of
+/// mpm::key. It refers to the options that it is read into, which must live while it is read.
 struct OptionKey {
   std::string name;  ///< empty: a check of what was read so far
   std::string type;
@@ -91,7 +91,7 @@ std::vector<KeyTable> key_tables(const std::string& name, const OptionKeys& keys
 /// The table of the manual, in Markdown.
 std::string manual_table(const OptionKeys& keys);
 
-/// What the manual says of a key, as plain text on one line: meaning, unit, what is allowed.
+/// What the manual says about a key, as plain text on one line: meaning, unit, what is allowed.
 std::string plain_meaning(const OptionKey& key);
 /// The same of every key, by its name.
 std::map<std::string, std::string> plain_meanings(const OptionKeys& keys);

@@ -19,7 +19,7 @@ class TomlDraft {
  public:
   explicit TomlDraft(std::vector<std::string> key_order) : key_order_(std::move(key_order)) {}
 
-  /// Writes the value under a key of the order; the last one counts, also in place of tables under this key.
+  /// Writes the value under a key of the order; the last one counts, also instead of tables under this key.
   template <class Value>
   void set(std::string_view key, const Value& value) {
     entry(key).value = toml_literal(value);
@@ -38,7 +38,7 @@ class TomlDraft {
   /// Writes the meaning of each key above it, on lines of its own; of several tables of one kind above the
   /// first. Returns this table.
   TomlDraft& explain(std::string_view kind, std::map<std::string, std::string> meanings);
-  /// "# KEY: TEXT" in place of a value that TOML cannot have. The text has no line break.
+  /// "# KEY: TEXT" instead of a value that TOML cannot have. The text has no line break.
   void comment(std::string_view key, std::string_view text);
   /// The table under `key`, made when it is not there.
   TomlDraft& table(std::string_view key, const std::vector<std::string>& key_order);

@@ -24,7 +24,7 @@ std::string in_quotes(std::string_view text);
 /// What a value is, for messages: "4", "4.0", "'abc'", "a list of 3", "a table".
 std::string describe(const toml::node& node);
 
-/// The same for a value in the place of a number: "the text '4.3' (a number has no quotes)".
+/// The same for a value instead of a number: "the text '4.3' (a number has no quotes)".
 std::string describe_no_number(const toml::node& node);
 
 }  // namespace mpm

@@ -14,7 +14,7 @@ namespace {
 constexpr Eigen::Index kBlock = 8;
 constexpr Eigen::Index kMostCoordinates = 512;  // rows of all bases, whose products stand on the stack
 
-/// True when row i + 1 is row i moved by a period, but for the first and the last columns.
+/// True when row i + 1 is row i moved by a period, except for the first and the last columns.
 bool follows(const RowMajorMatrix& rows, Eigen::Index i, Eigen::Index period) {
   const Eigen::Index count = rows.cols() - 2 * period;
   return std::equal(rows.row(i).data(), rows.row(i).data() + count, rows.row(i + 1).data() + period);

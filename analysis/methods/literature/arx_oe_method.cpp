@@ -159,7 +159,7 @@ class ArxOe final : public AssessmentMethod {
                                                     : fewest_prewhitened_samples(columns_of(loop)));
   }
 
-  /// With 1 in the place of 0 as the limit, as for covariances, and 0 for what is not judged.
+  /// With 1 instead of 0 as the limit, as for covariances, and 0 for what is not judged.
   CvAssessment judge_windows(Eigen::Index cv, const AssessedLoop& loop, Assessment& assessment) const {
     const HealthyWindows::Outside of =
         windows_[static_cast<std::size_t>(cv)].outside(plant_and_noise(cv, loop));

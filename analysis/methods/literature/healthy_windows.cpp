@@ -63,7 +63,7 @@ HealthyWindows::HealthyWindows(const PlantAndNoise& period, const WindowRule& ru
   noises_ = machine_of(noises);
 }
 
-/// With e - X b_0 in the place of e.
+/// With e - X b_0 instead of e.
 PlantAndNoise HealthyWindows::window_of(const PlantAndNoise& record, Eigen::Index number) const {
   const Eigen::Index first = number * rule_.step;
   const Eigen::MatrixXd X = record.X.middleRows(first, rule_.window);

@@ -56,7 +56,7 @@ struct ChannelDifference {
   Eigen::VectorXd D;
 };
 
-/// D of this plant in place of this channel of the model.
+/// D of this plant instead of this channel of the model.
 ChannelDifference channel_difference(const TransferFunction& nominal, const TransferFunction& plant,
                                      Eigen::Index cv, Eigen::Index mv, double sample_time,
                                      Eigen::Index samples);

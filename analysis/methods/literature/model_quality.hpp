@@ -19,7 +19,7 @@ enum class ModelQualityStatus : std::int8_t {
 /// Options of `model_quality`.
 struct ModelQualityOptions {
   HighOrderArxOptions arx;
-  /// Divide the sums of squares of e^d by n - p in place of n, p the coefficients that were fitted: without
+  /// Divide the sums of squares of e^d by n - p instead of n, p the coefficients that were fitted: without
   /// this correction the index of a perfect model is about sqrt(1 - p/n).
   bool correct_for_parameters = false;
 

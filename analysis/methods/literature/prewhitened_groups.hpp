@@ -18,8 +18,8 @@ namespace mpm {
 ///
 /// and the past of v and the constant are projected out of both sides, which removes the part of the noise
 /// that follows from its own past. In closed loop the MVs depend on past noise; X_j(k) contains u(k-1) and
-/// earlier moves, and with the past of v projected out, the rest is uncorrelated with w(k) but for errors of
-/// the noise model.
+/// earlier moves, and with the past of v projected out, the rest is uncorrelated with w(k) except for errors
+/// of the noise model.
 ///
 /// prewhitened_test() (analysis/identification) tests only whether groups help to predict e. It leaves the
 /// past of v in, which costs power but no false alarms, and accepts gaps.

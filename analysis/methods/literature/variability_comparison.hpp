@@ -73,7 +73,7 @@ struct VariabilityComparison {
 ///
 /// with limits of each mu from the autocorrelation of the errors along p (2.9 to 2.11), and the CVs near to
 /// the subspaces of those p whose mu is significantly above or below 1 (2.12 to 2.14; (2.13) is printed with
-/// P_w in place of P_b).
+/// P_w instead of P_b).
 ///
 /// | symbol    | name               | meaning                                  | shape     | unit  |
 /// |-----------|--------------------|------------------------------------------|-----------|-------|

@@ -53,7 +53,7 @@ class Candidates final : public AssessmentMethod {
   }
 
  private:
-  /// Keeps what it says of a CV where no earlier candidate says more.
+  /// Keeps what it says about a CV where no earlier candidate says more.
   void add_candidate(Eigen::Index candidate, const std::vector<Eigen::MatrixXd>& filtered,
                      const Eigen::MatrixXd& e, Assessment& assessment) const {
     const auto regressions = error_regressions(e, {filtered[static_cast<std::size_t>(candidate)]}, options_);

@@ -64,7 +64,8 @@ struct FitSurroundings {
 /// | Z      | unknown | q x N | CV                                |
 ///
 /// f is looked for in 1/8 ... 8, and s from -dead time to the dead time and residence time of G0 together, or
-/// a quarter of the record; an interval ends there, and a value there is a bound, but for a dead time of 0.
+/// a quarter of the record; an interval ends there, and a value there is a bound, except for a dead time of
+/// 0.
 ///
 /// If it is known which parameter is wrong, `only` (is_fitted_alone()), the others stay those of the model,
 /// so that none that the record cannot distinguish from it takes its place. Throws InputError for a channel

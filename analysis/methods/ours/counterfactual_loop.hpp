@@ -30,14 +30,14 @@ struct CounterfactualOptions {
   bool operator==(const CounterfactualOptions&) const = default;
 };
 
-/// Simulates the nominal loop itself, in place of filtering by S0. With the model G0 and the simulation
+/// Simulates the nominal loop itself, instead of filtering by S0. With the model G0 and the simulation
 /// errors e = y - y_sim of the record,
 ///
 ///   y0      = output of the controller on G0, under the recorded measured disturbances, without noise
 ///   y0_diag = the same for CV i when the recorded errors e_j of all other CVs are added to the outputs of G0
 ///   Ivar = var y / (var y0 + v),   Ivar_diag = var y_i / (var y0_diag,i + v_i),   v = var y_b - var y0_b
 ///
-/// and G0 in the place of the plant corrected by what the benchmark shows of its errors
+/// where the G0 that stands for the plant is corrected by what the benchmark shows of its errors
 /// (learnt_model()), as in (3.24) and (4.14), but exact also where the loop leaves limits and
 /// reaches them again, for which no linear S0 exists: with the errors of all CVs added, the loop returns y. y
 /// contains noise and y0 does not; v is what noise adds to the variance, taken from the basis case y_b of the

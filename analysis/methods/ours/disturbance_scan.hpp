@@ -15,7 +15,7 @@ namespace mpm {
 ///
 ///   log L = -log |C| / 2 - (nu + n) / 2 log(1 + SSE / nu),   or  -log |C| / 2 - SSE / 2  for nu = infinity,
 ///
-/// but for a constant that all hypotheses share.
+/// except for a constant that all hypotheses share.
 struct ScaleLikelihood {
   double freedom;  ///< nu
   double samples;  ///< n

@@ -63,7 +63,7 @@ TransferFunction with_error(const TransferFunction& channel, const ChannelError&
   return with_mismatches(TransferMatrix{{channel}}, {{0, 0, error.parameter, value}})(0, 0);
 }
 
-/// Rows with the same Z' Z but for faint ones: along the axes of Z Z', of which few count.
+/// Rows with the same Z' Z except for faint ones: along the axes of Z Z', of which few count.
 Eigen::MatrixXd strong(const Eigen::MatrixXd& Z) {
   if (Z.rows() == 0)
     return Z;

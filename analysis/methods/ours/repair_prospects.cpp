@@ -26,7 +26,7 @@ constexpr double kFaintShare = 1e-3;
 
 }  // namespace
 
-/// The record, and what it says of the model of each CV.
+/// The record, and what it says about the model of each CV.
 struct RepairProspects::Seen {
   const AssessedLoop& whole;
   const std::vector<bool>& counted;

@@ -61,7 +61,7 @@ struct RepairProspect {
 ///   gain(i, j) = (J(G0) - J(G0 with the repaired channel (i, j))) / J(G0)
 ///
 /// of the loops of plant P under n, with the controller on either model. A channel is repaired to its
-/// posterior mean, but for one whose repair is `given`.
+/// posterior mean, except for one whose repair is `given`.
 class RepairProspects {
  public:
   /// All must outlive it. Options are those of the study.

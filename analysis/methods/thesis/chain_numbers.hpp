@@ -30,7 +30,7 @@ std::vector<AssessmentNumberInfo> scenario_number_infos();
 /// Every number of a diagnosis, those of its CVs when it has any.
 std::vector<AssessmentNumber> chain_numbers(const Diagnosis& diagnosis);
 
-/// What the chain says of one CV of a named scenario, from the numbers of its answer.
+/// What the chain says about one CV of a named scenario, from the numbers of its answer.
 CvDiagnosis cv_diagnosis(const AssessmentRecord& said, Eigen::Index cv);
 
 /// TSSE (6.21), the sum of the SSE of all CVs; NaN without a diagnosis of every CV.
