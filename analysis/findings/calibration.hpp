@@ -13,7 +13,7 @@
 
 namespace mpm {
 
-/// What the methods of a study say of one calibration loop.
+/// What the methods of a study say about one calibration loop.
 struct CalibrationLoop {
   ExperimentKind kind;  ///< healthy, or ud
   /// One a method, in their order; NaN: no verdict, -infinity: a verdict without a score.

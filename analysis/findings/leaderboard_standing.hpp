@@ -36,7 +36,7 @@ struct Standing {
   /// board of worlds; "power_05_impact" otherwise.
   std::string_view rate = {};
   std::vector<BoardDuel> duels =
-      {};         ///< with each method that has the rate, but for the reference; best first
+      {};         ///< with each method that has the rate, except for the reference; best first
   int place = 0;  ///< 1 where no other one has a larger share of the loops in common
 
   int won() const;

@@ -15,7 +15,7 @@ struct FTest {
   double log_p = 0.0;        ///< ln of the p-value; 0 where the group has no regressor of its own
 };
 
-/// What groups of regressors say of a signal.
+/// What groups of regressors say about a signal.
 struct PrewhitenedTest {
   FTest all;                  ///< of all groups together
   std::vector<FTest> groups;  ///< of each group, given all others (partial F)

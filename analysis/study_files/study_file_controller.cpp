@@ -135,7 +135,7 @@ OptionKeys keys(CvOptions& cv) {
           .otherwise("required with `soft` and without `slack_cost`")
           .allow("> 0"),
       key::option("slack_cost", "number",
-                  "linear cost of a violation of the soft limits, beside or in place of `slack_weight`",
+                  "linear cost of a violation of the soft limits, beside or instead of `slack_weight`",
                   "1 / CV")
           .otherwise("none")
           .allow("> 0"),
@@ -344,7 +344,7 @@ OptionKeys controller_keys(Study& study) {
                       "1"),
           // Not written when it is left out: finished boards have the digests of studies without it.
           key::option("solver_time_limit", "number",
-                      "processor time that Ipopt may take for one problem, alone or in place of the "
+                      "processor time that Ipopt may take for one problem, alone or instead of the "
                       "active-set method; a loop that needs more is `failed`",
                       "s")
               .otherwise(fmt::format("{:g}", options.solver_time_limit))

@@ -62,7 +62,7 @@ OptionKeys transfer_function_keys(const std::string& input, const std::string& p
                       "gain of a channel that integrates, such as from a flow to a level: rate of the CV "
                       "under a constant input of 1, in `rate_gain / (s (time_constant s + 1))`",
                       "CV / " + input + " / time")
-              .otherwise("none; in place of `gain`")
+              .otherwise("none; instead of `gain`")
               .allow("finite"),
           key::option("time_constant", "number", "time constant of these two", "time")
               .otherwise("required with `gain`, none with `rate_gain`")

@@ -102,7 +102,7 @@ std::string solver_text(const Study& study, const RunOptions& options) {
       "solver: {}{}{}, {} loops at once in {}",
       study.controller_program ? "none, the controller is a program" : options.solver,
       options.solver == "auto" && !study.controller_program
-          ? " (active-set, Ipopt where an answer is not certified)"
+          ? " (active-set, Ipopt for answers that are not certified)"
           : "",
       audited > 0 ? fmt::format(", audit of {:g} % of the steps by Ipopt", 100.0 * audited) : "",
       options.jobs, runs_in_threads(study, options) ? "threads" : "worker processes");
@@ -111,7 +111,7 @@ std::string solver_text(const Study& study, const RunOptions& options) {
 std::string output_text(const std::string& output, const std::filesystem::path& shards) {
   std::error_code no_status;
   return fmt::format("{}{}; until then shards in {}", output,
-                     std::filesystem::exists(output, no_status) ? ", in place of the file that is there" : "",
+                     std::filesystem::exists(output, no_status) ? ", replacing the file that is there" : "",
                      shards.string());
 }
 

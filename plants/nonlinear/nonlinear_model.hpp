@@ -39,7 +39,7 @@ struct NonlinearModel {
   /// The equations with these parameters changed. Errors: InputError for a name that is not among
   /// `parameters`, or a value out of range.
   std::function<std::shared_ptr<const OdeSystem>(const std::vector<ParameterChange>&)> make_system;
-  std::shared_ptr<const ForeignModel> foreign = {};  ///< in place of make_system
+  std::shared_ptr<const ForeignModel> foreign = {};  ///< instead of make_system
 
   /// Does nothing when the plant can have these parameters. Errors: InputError as make_system; what somebody
   /// else's simulation refuses shows only when it runs.

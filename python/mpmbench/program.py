@@ -151,7 +151,7 @@ def stop(process):
 
 
 def message(text, code):
-    """What the program says of its error, without its name; the signal that has ended it."""
+    """What the program says about its error, without its name, or the signal that ended it."""
     if code < 0:
         return f"the program mpmbench was ended by the signal {signal.Signals(-code).name}"
     lines = [line for line in text.strip().splitlines() if not line.endswith(" --help lists the options")]

@@ -513,7 +513,7 @@ Row<AssessmentRecord> number_row(const NumberPlace& place) {
 RecordTable method_table(const AssessmentForm& form, std::size_t method) {
   RecordTable table{.group = "methods/" + form.method().name,
                     .dimension = "experiment",
-                    .title = form.method().title + ": what it says of each loop"};
+                    .title = form.method().title + ": what it says about each loop"};
   std::vector<Row<AssessmentRecord>> rows{member_row<std::string>(
       {"reason", "why there is no verdict", "1", "empty when there is one, or when the method was not asked"},
       &AssessmentRecord::reason)};

@@ -98,12 +98,12 @@ Figure worst_figure(const RecordAssessment& of) {
   figure.name = "measured-and-model";
   figure.caption =
       fmt::format("{}: measured, and simulated by the model from the recorded MVs and disturbances{}{}",
-                  as_label(variable.name), of.model_error > 0.0 ? ", but for a constant" : "",
-                  of.verdict.model.since ? "; shaded since something is wrong" : "");
+                  as_label(variable.name), of.model_error > 0.0 ? ", except for a constant" : "",
+                  of.verdict.model.since ? "; shaded from where something is wrong" : "");
   figure.legend = {{"measured", measured}, {"model", model}};
   figure.panels.push_back(
-      panel.finish(fmt::format("{} as measured and as the model has it, over time.", variable.name), kHeight,
-                   2 * kPanelWidth));
+      panel.finish(fmt::format("{} as measured and as simulated by the model, over time.", variable.name),
+                   kHeight, 2 * kPanelWidth));
   figure.columns = 1;
   return figure;
 }

@@ -53,7 +53,7 @@ void refuse_unknown_keys(const ProgramJson& answer, std::initializer_list<const 
 
 }  // namespace
 
-/// The programs of a study that run, and what they say of themselves.
+/// The programs of a study that run, and what they say about themselves.
 class ControllerTalks {
  public:
   ControllerTalks(std::vector<std::string> command, double time_limit)

@@ -65,7 +65,7 @@ struct MismatchRanges {
   Distribution inverse_response = Distribution::uniform(0.2, 1.0);
   /// Sizes are scaled until the loop has this effect (FaultScales); none: they are as drawn.
   std::optional<Distribution> impact = {};
-  std::vector<PlantParameterRange> plant_parameters = {};  ///< of a nonlinear plant, in place of channels
+  std::vector<PlantParameterRange> plant_parameters = {};  ///< of a nonlinear plant, instead of channels
 
   bool operator==(const MismatchRanges&) const = default;
 };

@@ -51,7 +51,7 @@ struct WorldRanges {
   /// u + c (u - a) (b - u) / (b - a), less what this adds where the loop starts. The gain of the MV goes from
   /// 1 + c to 1 - c between its limits, and no model has that.
   Distribution valve_curvature = Distribution::constant(0.0);
-  std::vector<WorldParameter> plant_parameters = {};  ///< of a nonlinear plant, in place of channels
+  std::vector<WorldParameter> plant_parameters = {};  ///< of a nonlinear plant, instead of channels
   BackgroundRanges background = {};
   int cost_loops = 8;  ///< pairs of loops over whose noise the cost of a fault is an expectation
   /// Loops over whose noise the gain of repairing a channel is an expectation; 0: it is not computed.

@@ -227,7 +227,7 @@ struct Study {
   TuningRanges tuning;
   OtherRanges other;
   OnsetRanges onset;
-  std::optional<WorldRanges> world;  ///< none: the model is exact but for the faults
+  std::optional<WorldRanges> world;  ///< none: the model is exact except for the faults
   SensitivityOptions sensitivity;
   S0PerturbationOptions s0_perturbation;
   DiagnosisOptions diagnosis;

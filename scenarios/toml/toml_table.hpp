@@ -82,7 +82,7 @@ class TomlTable {
   void refuse_unknown_keys() const;
   std::string path_of(std::string_view key) const;
 
-  const toml::table* table_;  // null: an empty table in place of one that is not there
+  const toml::table* table_;  // null: an empty table replaces a missing one
   const std::string* file_name_;
   std::string path_;
   std::uint32_t line_;

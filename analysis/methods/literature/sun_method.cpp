@@ -29,7 +29,7 @@ struct SunOptions {
   std::size_t criterion = 0;            ///< place in kSunCriteria
   bool own_outputs = false;             ///< AO of (2.1) is diagonal
   bool measured_disturbances = false;   ///< they stand beside the setpoints in (2.1)
-  bool correct_for_parameters = false;  ///< sums of squares of e^d over n - p in place of n
+  bool correct_for_parameters = false;  ///< sums of squares of e^d over n - p instead of n
   SunNoise noise = SunNoise::integrated;
   double noise_filter = 0.7;  ///< c of `integrated`
   int noise_order = 10;       ///< highest order of `benchmark`
