@@ -15,7 +15,7 @@ struct NumberWord {
   std::string word;
 };
 
-/// What is said of a number wherever it is shown: in archives, tables, figures and documents.
+/// The description of a number wherever it is shown: in archives, tables, figures and documents.
 struct NumberText {
   std::string name;          ///< in the form of a variable name, unique among the numbers beside it
   std::string meaning;       ///< what it is, in one line, with its equation

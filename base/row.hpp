@@ -19,7 +19,7 @@
 #include "base/number_text.hpp"
 #include "base/row_major.hpp"
 
-// A number is a row: what is said of it, its shape, and how it is taken out of its owner and put back. Tables
+// A number is a row: its description, its shape, and how it is taken out of its owner and put back. Tables
 // of rows are what archives, bytes of shards, comparisons, CSV and JSON iterate over.
 
 namespace mpm {

@@ -12,7 +12,7 @@ namespace mpm {
 /// SHA-256 in hexadecimal digits, as sha256sum prints it.
 std::string sha256(std::span<const std::byte> content);
 
-/// The same of content that comes piece by piece.
+/// The same for content that comes piece by piece.
 class Sha256 {
  public:
   Sha256();

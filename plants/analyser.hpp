@@ -47,8 +47,8 @@ class AnalyserHold {
   Eigen::Index sample_ = 0;
 };
 
-/// The analyses in what an analyser has shown, `shown` (N), each at the sample at which it was taken; NaN at
-/// all other samples, and where an analysis is not there by the end.
+/// The analyses behind the values that an analyser has shown, `shown` (N), each at the sample at which it was
+/// taken; NaN at all other samples, and where an analysis is not there by the end.
 Eigen::RowVectorXd analyses(const AnalyserTiming& timing, const Eigen::Ref<const Eigen::RowVectorXd>& shown);
 
 /// The timing with the `first` under which most changes of `shown` (N, NaN where missing) are new analyses.
@@ -58,11 +58,11 @@ AnalyserTiming with_first_of(AnalyserTiming timing, const Eigen::Ref<const Eigen
 Eigen::MatrixXd as_shown(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd signals,
                          const Eigen::Ref<const Eigen::VectorXd>& rest);
 
-/// What is known at the end of signals that analysers have shown as `shown` (n x N): each analysis from the
+/// The signals behind `shown` (n x N), as they are known at the end of the record: each analysis from the
 /// sample at which it was taken on, held to the next one. Before the first one it is what was shown at the
 /// start.
 Eigen::MatrixXd as_taken(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd shown);
-/// The same of the record of a plant, which tells by its changes when samples are taken (with_first_of()).
+/// The same for the record of a plant, whose changes show when samples are taken (with_first_of()).
 Eigen::MatrixXd as_taken_in_record(std::vector<AnalyserTiming> timings, const Eigen::MatrixXd& shown);
 
 }  // namespace mpm

@@ -20,7 +20,7 @@ struct SpringChange {
   bool operator==(const SpringChange&) const = default;
 };
 
-/// Solves with M_FF + B D B', D = diag(weights), when there is the factor M_FF = L L' and only a few springs
+/// Solves with M_FF + B D B', D = diag(weights), from the factor M_FF = L L', when only a few springs have
 /// changed since (Sherman, Morrison, Woodbury):
 ///
 ///     inv(M_FF + B D B') = inv(L') (I - W inv(inv(D) + W'W) W') inv(L),    W = inv(L) B.
@@ -28,7 +28,7 @@ struct SpringChange {
 /// The columns of W are kept as long as the factor is the same. All memory is taken at construction.
 class ActiveSetCorrection {
  public:
-  /// Changes at once: with more of them a factor of M_FF + B D B' is less work.
+  /// Most changes at a time: with more of them, to factor M_FF + B D B' is less work.
   static constexpr std::size_t kMost = 8;
 
   ActiveSetCorrection(const ActiveSetProblem& problem, ActiveSetFactor& factor);
@@ -36,8 +36,8 @@ class ActiveSetCorrection {
   /// No changes; to be called when the factor has changed.
   void clear();
 
-  /// These changes and no others. Returns false, and there are none, when they are too many or leave too
-  /// little of a diagonal for an accurate solution.
+  /// Replaces the changes. Returns false, and keeps none, when they are too many or leave too little of a
+  /// diagonal for an accurate solution.
   bool assign(const std::vector<SpringChange>& changes);
 
   /// Solves (M_FF + B D B') x_F = b_F in place: the entries F of `vector` are replaced, the others are kept.

@@ -16,16 +16,17 @@ namespace mpm {
 ///     M = Q + diag(sigma) + sum over stretched springs of k_i b_i b_i',    b_i = (a_i, e at the slack of i),
 ///
 /// kept from one iteration and one sample to the next: only springs that were stretched or released since
-/// are added or taken off. It is built anew when that is the smaller work.
+/// are added or taken off. It is built anew when that is less work.
 class ActiveSetCurvature {
  public:
   ActiveSetCurvature(const ActiveSetProblem& problem, std::size_t family_count);
 
   /// Forgets the springs: M = Q + diag(sigma).
   void clear();
-  /// Brings M up to the springs' present forces; false when that changed nothing.
+  /// Updates M to the present forces of the springs; false when nothing changed.
   bool synchronise(const std::vector<LimitSprings>& families);
-  /// What that would change, when it is at most ActiveSetCorrection::kMost springs; else false.
+  /// The changes that this would make, if they are at most ActiveSetCorrection::kMost springs; otherwise
+  /// false.
   bool find_few(const std::vector<LimitSprings>& families, std::vector<SpringChange>& changes) const;
 
   /// M in its lower triangle, beside it columns of the unit matrix up to the stride. What stands above is

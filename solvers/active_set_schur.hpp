@@ -17,9 +17,9 @@ class SchurFactor {
   Eigen::Index size() const { return size_; }
   void clear() { size_ = 0; }
 
-  /// Appends a row to S, whose products with the rows there are be c and whose diagonal be s: `lower` is
-  /// inv(L) c, as `solve_lower` gives it, and `left` is what that leaves of the diagonal, s - lower' lower.
-  /// Returns false, and appends nothing, when there is no room or nothing left (`left` <= 0, or NaN).
+  /// Appends a row to S with the products c with the present rows and the diagonal s: `lower` is inv(L) c, as
+  /// `solve_lower` gives it, and `left` is the rest of the diagonal, s - lower' lower. Returns false, and
+  /// appends nothing, when there is no room or no rest (`left` <= 0, or NaN).
   bool append(const Eigen::Ref<const Eigen::VectorXd>& lower, double left);
 
   /// Takes out row and column `k`; the later ones move up.

@@ -30,7 +30,7 @@ struct LimitSprings {
   Eigen::Index size() const { return stiffness.size(); }
   bool stretched(Eigen::Index i) const { return force(i) != 0.0; }
 
-  /// Sets the limits that the family has of these ones of the rows, shifted by the multipliers.
+  /// Sets the limits of the family from those of the rows, shifted by the multipliers.
   void set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper);
 
   /// Sets the values v for the row values A x and z. Without slacks they are the row values, which must stay
@@ -41,8 +41,8 @@ struct LimitSprings {
 
   /// Sets `force` from v.
   void pull();
-  /// The force of the springs that are stretched, at the same ends, as if they could push, too; none where
-  /// the limit is no more.
+  /// The force of the stretched springs, at the same ends, as if they could also push; none where the limit
+  /// is gone.
   void pull_stretched();
   /// Force zero, wherever the springs are.
   void release();
@@ -67,7 +67,7 @@ struct LimitSprings {
   void advance(double t, bool same);
 
   double slack_sign;
-  bool enabled = true;  ///< a family that is not is left out: its force is zero
+  bool enabled = true;  ///< false: the family is left out, and its force is zero
   LaneVector stiffness, lower, upper, multiplier;
   LaneVector force;
 

@@ -10,8 +10,8 @@ namespace mpm {
 
 class IpoptSolver;
 
-/// Whether an answer of the active-set method stands: certified, or infeasible, which that method says only
-/// with a proof.
+/// True for an answer of the active-set method that needs no second solver: certified, or infeasible, which
+/// the method returns only with a proof.
 bool is_certified(const QpResult& result);
 
 /// The active-set method, and Ipopt for the problems to which it gives no certified answer; these are marked

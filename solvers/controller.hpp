@@ -30,7 +30,7 @@ struct ControlMove {
   int fallbacks = 0;          ///< problems whose answer is Ipopt's, see CertifiedSolver
 };
 
-/// What decides on the MVs of a loop: the Mpc of this program, or a controller from outside. y(k) and d(k)
+/// Decides on the MVs of a loop: the Mpc of this program, or a controller from outside. y(k) and d(k)
 /// are measured just before u(k) acts; d(k) acts from sample k on, as u(k) does.
 ///
 /// | symbol | meaning                     | shape |
@@ -61,11 +61,11 @@ class Controller {
   /// Replaces the soft limits of the CVs from the next step on.
   virtual void set_cv_soft(const Limits& limits) = 0;
 
-  /// What operators have taken from it, from the next step on, until this is called again; nothing before. An
-  /// MV that is off acts from that step on where it is held, as a measured disturbance does, and the next
-  /// move is counted from there: its moves, and its targets where there are any, are this position. A CV that
-  /// is off counts for nothing but the output bias. Throws InputError for what SwitchedOff::validate()
-  /// refuses, and if the CVs that are left do not determine the moves (MpcQp).
+  /// The variables that operators have switched off, from the next step on until the next call; none at
+  /// first. An MV that is off is held at a position and acts as a measured disturbance does: its moves and
+  /// targets are this position, and the next move is counted from there. A CV that is off affects only the
+  /// output bias. Throws InputError for what SwitchedOff::validate() refuses, and if the CVs that are left do
+  /// not determine the moves (MpcQp).
   virtual void set_off(const SwitchedOff& off) = 0;
 
   /// The setpoints from the next step on; ny numbers, of which those of CVs without a setpoint are not read.

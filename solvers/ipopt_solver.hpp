@@ -16,7 +16,7 @@ struct IpoptOptions {
   /// A limit nearer than this to the last answer enters the working set too: it saves rounds, and changes
   /// the answer only within the tolerance.
   double working_set_margin = 0.01;
-  /// A problem with at most this many rows is handed over at once all the same: one run of Ipopt over few
+  /// A problem with at most this many rows is always handed over at once: one run of Ipopt over few
   /// rows is faster than two.
   int rows_at_once = 32;
 
@@ -30,12 +30,12 @@ struct IpoptOptions {
 /// Ipopt sees the problem as ReducedProgram writes it.
 ///
 /// An answer `infeasible` is certified: the smallest possible largest violation of the hard row limits
-/// within the box, itself found as a linear program, is above 1e-7. When the working set brings no answer,
-/// all limits are tried at once, and a run that Ipopt ends as a failure counts as solved if its point passes
+/// within the box, itself found as a linear program, is above 1e-7. When the working set gives no answer, all
+/// limits are tried at once, and a run that Ipopt ends as a failure counts as solved if its point passes
 /// kkt_residual() with at most 1e-7.
 ///
-/// The time limit of a problem (set_time_limit()) is one of the processor time of the thread, and looked at
-/// between iterations. Throws std::bad_alloc when Ipopt has no memory.
+/// The time limit of a problem (set_time_limit()) is processor time of the thread, checked between
+/// iterations. Throws std::bad_alloc when Ipopt has no memory.
 ///
 /// Ipopt with sequential MUMPS must not run in two threads of one process.
 class IpoptSolver final : public QpSolver {

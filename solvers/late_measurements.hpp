@@ -10,10 +10,10 @@
 
 namespace mpm {
 
-/// The model of a controller that learns of some MDs late. A new value d(k) was measured `delay` samples
-/// before: the MD has had it since sample k - delay, while the model had another one. The model is run again
-/// over these samples, so that y_sim(k) follows from all that is known at sample k, and what the disturbance
-/// has already done to the outputs is no output bias.
+/// The model of a controller that receives some MDs late. A new value d(k) was measured `delay` samples
+/// before: the MD has had it since sample k - delay, while the model used an older one. The model is run
+/// again over these samples, so that y_sim(k) follows from all that is known at sample k, and what the
+/// disturbance has already done to the outputs is no output bias.
 class LateMeasurements {
  public:
   /// One timing an MD; `model` has the MDs after the MVs.

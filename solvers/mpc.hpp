@@ -23,14 +23,14 @@ namespace mpm {
 /// have targets (thesis 2.4, 3.3, 6.3, 6.4).
 ///
 /// At sample k, from the measured CVs y(k) and MDs d(k):
-/// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction. Of a CV
-///    of an analyser y_sim is that at the sample at which the analysis was taken; MDs that are measured late
-///    act in it from when they were measured (LateMeasurements). The bias of a CV that integrates may have a
+/// 1. Output-bias feedback: b(k) = y(k) - y_sim(k), y_sim = G0 (u, d), is added to every prediction. For a CV
+///    of an analyser, y_sim is taken at the sample of the analysis; MDs that are measured late act in it from
+///    the time of their measurement (LateMeasurements). The bias of a CV that integrates may have a
 ///    ramp, r(k) = r(k-1) + alpha (b(k) - b(k-1) - r(k-1)), because unknown flows act on a level all the
 ///    time. Its prediction l samples ahead has b(k) + l r(k).
 /// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19). A CV that integrates is at a steady
-///    state where its rate is 0, K_d and K are those of the rate, and r stands for b; a rate counts by what
-///    it makes of the CV over the prediction horizon.
+///    state where its rate is 0, K_d and K are those of the rate, and r stands for b; a rate counts by the
+///    change that it makes to the CV over the prediction horizon.
 /// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20). Setpoints are
 ///    those of this sample, held over the horizon: the controller does not know their changes beforehand.
 ///

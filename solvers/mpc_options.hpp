@@ -9,7 +9,8 @@
 
 namespace mpm {
 
-/// What a weight Q of the thesis multiplies: |Q x|^2 can be read either way (docs/methods.md).
+/// Whether a weight Q of the thesis multiplies x or its square: |Q x|^2 can be read either way
+/// (docs/methods.md).
 enum class WeightConvention {
   direct,   ///< Q x^2: the number in the table is the weight
   squared,  ///< (Q x)^2: (6.20) read to the letter
@@ -86,8 +87,8 @@ struct MpcOptions {
   /// Of MDs that are measured late: a value that is new was measured `delay` samples before, and the model is
   /// corrected from there on (LateMeasurements). Empty: none.
   std::vector<AnalyserTiming> md_analysers = {};
-  /// Samples for which each planned position of the MVs is held but the last, which is held to the end of the
-  /// horizon (move blocking); empty: one sample each.
+  /// Samples for which each planned position of the MVs is held (move blocking). The last position is held to
+  /// the end of the horizon and has no entry. Empty: one sample each.
   std::vector<int> move_blocks = {};
   WeightConvention weight_convention = WeightConvention::direct;
   SlackForm slack_form = SlackForm::per_sample;
@@ -96,8 +97,8 @@ struct MpcOptions {
   Limits cv_hard;
   Limits cv_soft;
   Eigen::VectorXd mv_cost;
-  /// Where an MV rests as far as the limits of the CVs allow: w_u (u_tgt - r_u)^2 in the objective (6.19).
-  /// Empty or weights of 0: nowhere.
+  /// Resting values of the MVs, held as far as the limits of the CVs allow: w_u (u_tgt - r_u)^2 in the
+  /// objective (6.19). Empty or weights of 0: nowhere.
   Eigen::VectorXd resting_value = {}, resting_weight = {};
   /// Cost of a unit of steady-state violation of a CV soft limit in the target optimizer, relative to the
   /// largest |mv_cost|. Large enough that limits are left only when no target keeps them (docs/methods.md).

@@ -26,8 +26,8 @@ inline constexpr double kAnswerRounding = 0x1p-47;
 /// The public `solve` checks its input and certifies the answer: one with a KKT residual above
 /// kSolvedKktResidual is a `numerical_error`, whatever the back end says. `certified` is one with a residual
 /// of at most kCertifiedKktResidual or of kAnswerRounding times the largest number of x and A x: with
-/// doubles, an answer of 1e7, as in a loop that runs away, comes no nearer to its limits. Back ends implement
-/// `do_solve` only. A solver belongs to one controller and is not shared between threads.
+/// doubles, an answer of 1e7, as in a loop that runs away, cannot come nearer to its limits. Back ends
+/// implement `do_solve` only. A solver belongs to one controller and is not shared between threads.
 class QpSolver {
  public:
   /// Throws InputError when the structure is not valid.
@@ -41,7 +41,7 @@ class QpSolver {
   const QpResult& solve(const QpData& data);
 
   /// The same, from the guess `x` (n) and not from the last answer. A back end that starts from a set of
-  /// active limits rather than a point passes over it.
+  /// active limits rather than a point ignores it.
   const QpResult& solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x);
 
   /// Processor seconds that Ipopt may take for one problem from now on, all of its runs together; a problem
@@ -69,8 +69,8 @@ class QpSolver {
   /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer without
   /// its residual.
   virtual void do_solve(const QpData& data, QpResult& result) = 0;
-  /// Fills objective and KKT residual of `result` from its x, slack and multipliers, and takes `solved` back
-  /// where the residual says so, and says whether the answer is certified. A back end that passes on the
+  /// Fills objective and KKT residual of `result` from its x, slack and multipliers, withdraws `solved` where
+  /// the residual is too large, and says whether the answer is certified. A back end that passes on the
   /// answers of other solvers, which have filled these, leaves them as they are.
   virtual void certify(const QpData& data, QpResult& result);
   virtual void do_reset() = 0;

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// The variables that operators have taken from a controller.
+/// The variables of a controller that operators have switched off.
 ///
 /// | symbol | member   | shape | meaning                                                              |
 /// |--------|----------|-------|----------------------------------------------------------------------|

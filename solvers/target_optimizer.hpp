@@ -16,7 +16,7 @@ namespace mpm {
 ///                 cv_soft.lower - v <= y_0 + K u_tgt <= cv_soft.upper + v
 ///
 /// where K is the static gain of the nominal model and y_0 what the CVs would settle at with the MVs at zero.
-/// A CV that integrates stands here with its rate and limits of 0 (Mpc).
+/// A CV that integrates enters with its rate, whose limits are 0 (Mpc).
 /// The thesis gives no answer for limits that no target satisfies. Here the violation v has the price
 /// rho = target_violation_cost * the largest slope of the objective within the limits, max|phi_u| without
 /// resting values: an exact penalty, so that limits which can be kept are kept (v = 0, the answer is that of

@@ -9,10 +9,9 @@
 
 namespace mpm {
 
-/// A process that makes processes, so that threads can have some: a fork copies the memory of a process as it
-/// is, with the locks that its other threads hold at that moment, which nobody releases in the copy. This one
-/// is forked once, while no other thread is at work, has one thread itself, and forks whenever it is asked
-/// to.
+/// A process that makes processes for threads. A fork copies the memory of a process as it is, with the locks
+/// that other threads hold at that moment; nobody releases these in the copy. This process is forked once,
+/// while no other thread is at work, has one thread itself, and forks whenever it is asked to.
 ///
 /// Each service has two processes, both of its making: one that does the work, and one that waits for it,
 /// ends it when it takes too long or its user is gone, and says how it ended (ForkedService). Whatever the

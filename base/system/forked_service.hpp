@@ -31,9 +31,9 @@ class ForkedService {
   ~ForkedService();
 
   /// The answer. Errors: ForeignFailure with what the function threw, how its process ended, or that the time
-  /// was over; after the last two the process is gone, with all of its group. The same happens at once when
-  /// the other end of the socket `user`, for which the answer is, is gone. SurroundingsFailure when somebody
-  /// has killed the process, and when what the function threw was of the surroundings.
+  /// was up; after the last two the process is gone, with all of its group. The same happens at once when the
+  /// other end of the socket `user`, for which the answer is, is gone. SurroundingsFailure when somebody has
+  /// killed the process, and when what the function threw was of the surroundings.
   std::vector<double> ask(const std::vector<double>& request, int user = -1);
 
  private:

@@ -11,7 +11,7 @@ namespace mpm {
 /// never deliver data, or never end. Throws InputError with `path`, what is in the way, and `allowed`.
 std::ifstream open_input(const std::filesystem::path& path, const std::string& allowed);
 
-/// What can still be read of a stream. Faster by far than iterators over its characters.
+/// The rest of a stream. Much faster than iterators over its characters.
 std::string content_of(std::istream& stream);
 
 }  // namespace mpm

@@ -16,8 +16,8 @@ namespace mpm {
 /// A value of JSON that somebody else has written, and its place for messages: "FILE: cells[3]: study". It
 /// must live as long as what is read from it.
 ///
-/// Each member function that asks for something throws InputError "PLACE: found ...; allowed: ..." where the
-/// value is anything else, so that no message of the JSON library reaches a user.
+/// Each member function that asks for something throws InputError "PLACE: found ...; allowed: ..." where it
+/// finds anything else, so that no message of the JSON library reaches a user.
 class JsonEntry {
  public:
   using Json = nlohmann::ordered_json;
@@ -40,7 +40,7 @@ class JsonEntry {
   bool has(std::string_view key) const { return value_.is_object() && value_.contains(key); }
   /// The value of a key that an object must have.
   JsonEntry at(const std::string& key) const;
-  /// None where the object does not have the key, or null stands there.
+  /// None where the object lacks the key or its value is null.
   std::optional<JsonEntry> find(const std::string& key) const;
   std::vector<JsonEntry> list(const std::string& allowed = "a list") const;
 
@@ -59,7 +59,7 @@ class JsonEntry {
   std::string place_;
 };
 
-/// A text as JSON. Throws InputError "PLACE: found no JSON; allowed: ..." where it is none.
+/// Parses a text as JSON. Throws InputError "PLACE: found no JSON; allowed: ..." for any other text.
 JsonEntry::Json parsed_json(std::string_view text, const std::string& place, const std::string& allowed);
 
 }  // namespace mpm

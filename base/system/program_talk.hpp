@@ -12,7 +12,7 @@
 namespace mpm {
 
 /// A program that answers each message, a JSON object, by another one with the number of the message
-/// ("number"). An answer with the number of an earlier message is passed over: the first one counts.
+/// ("number"). A second answer to a message is ignored.
 ///
 /// As ChildProcess an object belongs to one thread, and to the process that made it.
 class ProgramTalk {

@@ -5,7 +5,7 @@
 #include <string>
 
 // "Asked, and it failed" and "could not be asked" are two things. The first is an outcome: of a method, a
-// plant, a controller, a loop. The second says nothing of any of them.
+// plant, a controller, a loop. The second says nothing about them.
 
 namespace mpm {
 
@@ -18,7 +18,7 @@ class SurroundingsFailure : public std::runtime_error {
 };
 
 /// Is it of this kind? So are std::bad_alloc, and std::system_error: no files, processes, threads or memory
-/// left. Whoever makes an outcome of an exception lets these pass.
+/// left. Code that turns exceptions into outcomes lets these pass.
 bool is_of_surroundings(const std::exception& error);
 
 /// Its text for people: that of the standard library for too little memory says nothing.

@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// An empty folder "mpmbench-temporary-XXXXXX" among the temporary files (TMPDIR), which goes with this
+/// An empty folder "mpmbench-temporary-XXXXXX" among the temporary files (TMPDIR), which is removed with this
 /// object.
 ///
 /// The folder of a process that was killed stays until the same user makes the next one. A folder is locked
@@ -14,7 +14,7 @@ namespace mpm {
 /// this name that is not locked is removed.
 class TemporaryFolder {
  public:
-  /// Errors: std::system_error when there is none to be had.
+  /// Errors: std::system_error when none can be made.
   TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

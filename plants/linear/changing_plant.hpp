@@ -11,8 +11,9 @@
 
 namespace mpm {
 
-/// A linear plant that changes from one transfer matrix to another while it runs: the part a(k) of the way,
-/// from 0 to 1. A channel that changes from G to H, with H = f H1 and H1 of the static gain of G, is
+/// A linear plant that changes from one transfer matrix to another while it runs. a(k), from 0 to 1, is the
+/// part of the way that is done. A channel that changes from G to H, with H = f H1, where H1 has the static
+/// gain of G, is
 ///
 ///   y(k) = (1 - a(k)) G w + a(k) H1 w,   w(k) = (1 + (f - 1) a(k)) u(k).
 ///
@@ -22,7 +23,7 @@ namespace mpm {
 class ChangingPlant final : public Plant {
  public:
   /// `share` is a(k), one number a sample; after the last one it stays. It holds over the sample time before
-  /// sample k, so that means (OutputSampling::average) go over by the same share. Errors: InputError for
+  /// sample k, so that means (OutputSampling::average) change by the same share. Errors: InputError for
   /// matrices of different size, no share, a share outside [0, 1], or as LinearPlant.
   ChangingPlant(const TransferMatrix& before, const TransferMatrix& after, double sample_time,
                 Eigen::VectorXd share, OutputSampling sampling = OutputSampling::snapshot);

@@ -51,7 +51,7 @@ struct GeneralChannel {
   ChannelWiring wiring;
 };
 
-/// What a channel of step coefficients has beside its state.
+/// The data of a channel of step coefficients beyond its state.
 struct CoefficientChannel {
   Eigen::Index row, col;
   Eigen::VectorXd step;  ///< that of DiscreteChannel, with its last value up to the length of the longest

@@ -9,7 +9,7 @@ namespace mpm {
 /// Sums of its time constants after which a transfer function has settled: e^-21 = 1e-9.
 inline constexpr double kTimesToSettle = 21.0;
 
-/// A step response S(t) by its coefficients, as dynamic matrix control has it: S(0) = 0, S(T) = s_1, ...,
+/// A step response S(t) by its coefficients, as dynamic matrix control uses it: S(0) = 0, S(T) = s_1, ...,
 /// S(n T) = s_n, straight lines in between. After the last coefficient it stays there, or, of a channel that
 /// integrates, goes on with the last slope, (s_n - s_(n-1)) / T.
 ///
@@ -22,7 +22,7 @@ class StepCoefficients {
   /// that is not finite and > 0.
   StepCoefficients(Eigen::VectorXd values, double interval, bool ramps);
 
-  /// S(t). Between two coefficients within a relative 1e-9 of an interval t is that of the nearer one.
+  /// S(t). A t within a relative 1e-9 of an interval from a coefficient gives this coefficient.
   double operator()(double t) const;
   double interval() const { return interval_; }
   /// When the last coefficient is reached.
@@ -49,7 +49,7 @@ class StepCoefficients {
   friend bool operator==(const StepCoefficients& a, const StepCoefficients& b);
 
  private:
-  /// S(t) of t >= 0, at 0 what it is right after it.
+  /// S(t) for t >= 0; at 0 its value right after 0.
   double after_start(double t) const;
   double integral(double from, double to) const;
 

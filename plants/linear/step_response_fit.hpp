@@ -17,7 +17,7 @@ struct StepResponseFit {
   double largest_error = kNaN;  ///< of the response, as a share of its largest value; 0 for no response
 };
 
-/// Error of a fit that does not call for a richer form, as a share of the largest value of the response: for
+/// Largest error of a fit that needs no richer form, as a share of the largest value of the response: for
 /// a plant, which may be nonlinear, and for coefficients, which are rounded.
 inline constexpr double kNegligibleOfPlant = 1e-3, kNegligibleOfCoefficients = 1e-6;
 
@@ -31,17 +31,18 @@ inline constexpr double kNegligibleOfPlant = 1e-3, kNegligibleOfCoefficients = 1
 /// s}/s and the others over s.
 ///
 /// K and b follow linearly from the others (variable projection), which the Levenberg-Marquardt method finds
-/// from several starting points. The simplest is that with the least n log(mean squared error + f^2) +
-/// p log n: p parameters, n samples. f is what an error may be without a reason for a richer form:
-/// `negligible`, in the unit of the response, and `share` of its largest value. Errors: InputError for fewer
-/// than 8 samples, numbers that are not finite, or a sample time that is not > 0.
+/// from several starting points. The simplest is the one with the least n log(mean squared error + f^2) + p
+/// log n, with p parameters and n samples. f is the largest error that needs no richer form: `negligible`, in
+/// the unit of the response, and `share` of its largest value. Errors: InputError for fewer than 8 samples,
+/// numbers that are not finite, or a sample time that is not > 0.
 StepResponseFit fit_step_response(const Eigen::Ref<const Eigen::VectorXd>& response, double sample_time,
                                   double negligible, double share = kNegligibleOfPlant);
 
 /// The transfer function that fits the coefficients of a step response, as dynamic matrix control has them:
 /// values 1, 2, ... intervals after a step of 1. Errors: InputError as fit_step_response(), and for a
-/// response that has not settled, because the coefficients are too few: it still moves at its end, more than
-/// a tenth of the largest one away from where the fit goes. `negligible` is what their digits leave open.
+/// response that has not settled, because the coefficients are too few: at its end it still moves and is more
+/// than a tenth of the largest one away from the final value of the fit. `negligible` is the uncertainty that
+/// their digits leave.
 StepResponseFit fit_step_coefficients(const Eigen::VectorXd& coefficients, double interval,
                                       double negligible = 0.0);
 
@@ -58,7 +59,7 @@ std::optional<TransferFunction> with_fewest_digits(const TransferFunction& chann
                                                    const Eigen::VectorXd& coefficients, double interval,
                                                    const Eigen::VectorXd& tolerances);
 
-/// Where a response ends, and where the fit goes: values, or of a channel that integrates rates.
+/// The final values of a response and of its fit; rates if the channel integrates.
 struct ResponseEnd {
   double last, fitted;
   double largest;  ///< of the response

@@ -23,9 +23,9 @@ namespace mpm {
 /// factors s are cancelled, so that a zero at the origin and an integrator are never both present;
 /// otherwise the coefficients stay as given. A value type: the `with_` functions return a changed copy.
 ///
-/// An output that integrates drifts, and is looked at through a washout: with behind_washout() the function
-/// is G(s) s / (s + 1 / T_w), which has no pole at the origin any more. Numerator and denominator are then
-/// those of the product; the changes of gain, time constants and dead time are those of G.
+/// An output that integrates drifts, and is therefore observed through a washout: with behind_washout() the
+/// function is G(s) s / (s + 1 / T_w), which has no pole at the origin any more. Numerator and denominator
+/// are then those of the product; the changes of gain, time constants and dead time are those of G.
 ///
 /// A function may have the coefficients of its step response, from which its gains and whatever is simulated
 /// are then taken. The rational form is one fitted to them: it has the parameters (poles, residence time,
@@ -83,7 +83,7 @@ class TransferFunction {
   /// that of G.
   double residence_time() const;
 
-  /// Whether with_time_scaled() changes the function: not one that is zero, static or only integrates.
+  /// Whether with_time_scaled() changes the function: false for one that is zero, static or only integrates.
   bool has_time_constant() const;
 
   /// G(s) s / (s + 1 / time_constant): the output behind a first-order high-pass filter. The zero-order-hold
@@ -102,7 +102,7 @@ class TransferFunction {
   TransferFunction without_step_coefficients() const;
   const std::optional<StepCoefficients>& step_coefficients() const { return step_; }
 
-  /// How far back the function looks at each single input: dead time, or last coefficient if that is later.
+  /// How long the function remembers each single input: dead time, or last coefficient if that is later.
   double memory() const { return step_ && step_->end() > dead_time_ ? step_->end() : dead_time_; }
 
   /// Are all coefficients and the dead time the same? Other coefficients with the same G differ.

@@ -37,11 +37,11 @@ class TransferMatrix {
   /// Whether a channel of the row has a pole at the origin, so that constant inputs hold the output only if
   /// its rate is 0.
   bool is_integrating(Eigen::Index row) const;
-  /// Whether some row is.
+  /// Whether any row does.
   bool is_integrating() const;
 
-  /// What a constant input of 1 does in the end, rows() x cols(): to the output, G(0), or of a row that
-  /// integrates to its rate, lim s G(s).
+  /// The final effect of a constant input of 1, rows() x cols(): on the output, G(0), or, in a row that
+  /// integrates, on its rate, lim s G(s).
   Eigen::MatrixXd steady_gain() const;
 
   /// The outputs at which a plant rests under a constant `input` (cols()), rows(): G(0) input; what

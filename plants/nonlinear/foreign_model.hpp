@@ -19,7 +19,7 @@ class ForeignSimulation {
  public:
   virtual ~ForeignSimulation() = default;
 
-  /// Begins anew, whatever went before, with these parameters and inputs: one number each of the model.
+  /// Starts again from the beginning with these parameters and inputs, one number for each of the model.
   virtual void start(const Eigen::VectorXd& parameters, const Eigen::VectorXd& input) = 0;
   /// Gives the parameters other values from now on.
   virtual void change(const Eigen::VectorXd& parameters) = 0;
@@ -32,7 +32,7 @@ class ForeignSimulation {
   ForeignSimulation& operator=(const ForeignSimulation&) = default;
 };
 
-/// How the simulation of somebody else is used.
+/// Settings for a simulation by somebody else.
 struct ForeignOptions {
   double settle = 0.0;             ///< time for which inputs are held until the plant counts as at rest, > 0
   double settle_tolerance = 1e-6;  ///< largest move of an output at rest, of max(1, |y|)
@@ -41,7 +41,7 @@ struct ForeignOptions {
   bool operator==(const ForeignOptions&) const = default;
 };
 
-/// Where the equations of a nonlinear plant come from when they are not ours.
+/// The source of the equations of a nonlinear plant that are not ours.
 class ForeignModel {
  public:
   explicit ForeignModel(const ForeignOptions& options) : options_(options) {}

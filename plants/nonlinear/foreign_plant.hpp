@@ -20,7 +20,7 @@ namespace mpm {
 class ForeignPlant final : public Plant {
  public:
   /// Errors: InputError as ForeignModel::load(), for a sample time that is not > 0, a changed parameter that
-  /// the model has not, and an onset > 0 of one that cannot change while it runs.
+  /// the model does not have, and an onset > 0 of one that cannot change while it runs.
   ForeignPlant(const NonlinearModel& model, double sample_time, const std::vector<ParameterChange>& changes,
                Eigen::Index onset);
 

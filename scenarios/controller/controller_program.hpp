@@ -19,9 +19,9 @@ class ControllerTalks;
 ///   {"call": "step", "y", "d", "u", "y_set", "cv_soft"}         ->  {"u": [...], "u_target": [...]}
 ///
 /// each with the number of the message (ProgramTalk). While variables are off, a step has "mv_off" and
-/// "cv_off" as well, and what it answers for an MV that is off is not used. Copies share their programs: as
-/// many run as controllers are at work at the same time in one process, and those that have nothing to do
-/// wait for the next loop.
+/// "cv_off" as well, and what it answers for an MV that is off is not used. Copies share their programs: one
+/// runs for each controller that is at work at the same time in one process, and idle ones wait for the next
+/// loop.
 class ControllerProgram {
  public:
   ControllerProgram(std::vector<std::string> command, double time_limit);
@@ -33,10 +33,10 @@ class ControllerProgram {
   /// no description.
   bool runs_on_model() const;
 
-  /// A controller of `plant` with this tuning, told of unit step responses of `samples` samples. What goes
-  /// wrong with the program shows as ControlStatus::failed; what goes wrong with its surroundings
+  /// A controller of `plant` with this tuning, which receives unit step responses of `samples` samples. A
+  /// failure of the program becomes ControlStatus::failed; a failure of its surroundings
   /// (is_of_surroundings()) is thrown. `factory` makes the solver of nominal_target(), which is that of Mpc;
-  /// what the program answers is held within the hard limits of the MVs.
+  /// the answers of the program are limited to the hard limits of the MVs.
   std::unique_ptr<Controller> controller(const PlantModel& plant, const MpcOptions& options,
                                          Eigen::Index samples, const QpSolverFactory& factory) const;
 

@@ -6,7 +6,7 @@
 #include "plants/linear/plant_model.hpp"
 #include "solvers/mpc_options.hpp"
 
-// What programs of somebody else (methods, controllers) are told of a study, as JSON. A number that is
+// The parts of a study that outside programs (methods, controllers) receive, as JSON. A number that is
 // missing or not finite is null.
 
 namespace mpm {

@@ -16,9 +16,9 @@
 
 namespace mpm {
 
-/// What is wrong in an experiment. Nothing is in a `healthy` one, the basis case among them: there is only
-/// noise. In one of the kind `tuning` model and plant agree, and a weight of the controller is changed. In
-/// one of the kind `other` something is wrong around the model: see OtherFault.
+/// What is wrong in an experiment. In a `healthy` one, such as the basis case, nothing is wrong: there is
+/// only noise. In one of the kind `tuning` model and plant agree, and a weight of the controller is changed.
+/// In one of the kind `other` something is wrong around the model: see OtherFault.
 enum class ExperimentKind : std::int8_t { healthy = 0, mpm = 1, ud = 2, mpm_ud = 3, tuning = 4, other = 5 };
 
 template <>
@@ -38,7 +38,7 @@ FaultSource source_of(ExperimentKind kind);
 template <>
 inline constexpr auto kWords<FaultSource> = word_list("none", "mpm", "ud", "mpm_ud", "other");
 
-/// Which parameter of a channel a model-plant mismatch changes, as in table 6.4, or what it adds to it.
+/// Which parameter of a channel a model-plant mismatch changes, as in table 6.4, or adds to the channel.
 enum class MismatchParameter : std::int8_t {
   gain = 0,
   time_constant = 1,
@@ -65,7 +65,7 @@ struct Mismatch {
   friend bool operator==(const Mismatch& a, const Mismatch& b);
 };
 
-/// The plant that has these mismatches, one after the other, where the model is `model`. Errors: InputError
+/// The plant that results from `model` by these mismatches, one after the other. Errors: InputError
 /// for a channel outside of the matrix, or as the `with_` functions of TransferFunction.
 TransferMatrix with_mismatches(TransferMatrix model, const std::vector<Mismatch>& mismatches);
 
@@ -115,7 +115,7 @@ struct RandomWalk {
   bool operator==(const RandomWalk&) const = default;
 };
 
-/// White noise as WhiteNoise has it, but in bursts with silence between them: after each sample a burst ends
+/// White noise like WhiteNoise, but in bursts with silence between them: after each sample a burst ends
 /// with the probability 1 / length, and after a silent one a burst begins with 1 / pause.
 struct Bursts {
   double factor = 1.0;
@@ -130,7 +130,7 @@ using DisturbanceSignal = std::variant<WhiteNoise, Sine, Ramp, StepSequence, Ran
 /// The signal times a factor.
 DisturbanceSignal scaled(DisturbanceSignal signal, double factor);
 
-/// What stands between the signal v of a disturbance and the CV.
+/// The transfer function from the signal v of a disturbance to the CV.
 enum class DisturbanceModel : std::int8_t {
   first_order = 0,        ///< G_d = gain / (time_constant s + 1)
   transfer_function = 1,  ///< any G_d; it may integrate

@@ -14,7 +14,7 @@
 #include "scenarios/faults/signal_sequence.hpp"
 #include "scenarios/random/distribution.hpp"
 
-// What the random mismatches and disturbances of a study are drawn from.
+// The ranges from which the random mismatches and disturbances of a study are drawn.
 
 namespace mpm {
 

@@ -56,8 +56,8 @@ enum class VariableSort { cv, mv, md };
 ///
 /// Those of a measurement begin with the onset, those of an MV or a limit at Onset::sample.
 ///
-/// A method sees the measurements, what the controller asks of a valve, and the value of an MV that is held.
-/// It does not see the new limit.
+/// A method sees the measurements, the position that the controller asks of a valve, and the value of an MV
+/// that is held. It does not see the new limit.
 struct OtherFault {
   OtherFaultKind kind;
   Eigen::Index variable;  ///< place of the CV, MV or MD
@@ -68,7 +68,7 @@ struct OtherFault {
   friend bool operator==(const OtherFault& a, const OtherFault& b);
 };
 
-/// Where the stem of a valve stands that sticks from the first sample on.
+/// The position of the stem of a valve that sticks from the first sample on.
 enum class ValveStart : std::int8_t {
   signal = 0,   ///< where it is asked to
   unknown = 1,  ///< anywhere that it can stand under this signal, drawn for each experiment
@@ -80,7 +80,7 @@ inline constexpr auto kWords<ValveStart> = word_list("signal", "unknown");
 /// Ranges of the random faults of this sort.
 struct OtherRanges {
   /// Relative frequency of each kind, in their order; those from sensor_stuck on came later, and are drawn
-  /// where a study asks for them. One that the loop cannot have is never drawn.
+  /// only where a study asks for them. A fault that the loop cannot have is never drawn.
   std::array<double, kOtherFaultKinds.size()> weight{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   /// Bias or final drift of a sensor over the standard deviation of its noise, with either sign.
   Distribution sensor = Distribution::uniform(5.0, 20.0);
@@ -110,7 +110,7 @@ enum class FaultEffect : std::int8_t {
   hold,          ///< an MV stays where it is, unknown to the controller
 };
 
-/// What the range of a size is in parts of; 1 where a loop has none.
+/// The unit of the range of a size; 1 where a loop has none.
 enum class SizeUnit : std::int8_t {
   own,         ///< the unit of the variable, or a factor
   noise,       ///< standard deviation of the noise of the CV
@@ -118,7 +118,7 @@ enum class SizeUnit : std::int8_t {
   soft_range,  ///< width of the soft limits of the CV
 };
 
-/// All that is known of a kind of fault. A further kind is an enumerator with its word, and a row of the
+/// All properties of a kind of fault. A further kind is an enumerator with its word, and a row of the
 /// table in other_fault.cpp; one that changes something else is a FaultEffect, too.
 struct OtherFaultInfo {
   OtherFaultKind kind;

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// A source as methods tell it, programs and files of verdicts write it, and tables of confusions count it:
-/// FaultSource, and of `other` what it is about where that is said.
+/// A source as methods name it, programs and files of verdicts write it, and tables of confusions count it:
+/// FaultSource and, for `other`, what the fault is about, if the method says so.
 enum class ToldSource : std::int8_t {
   none = 0,
   mpm = 1,
@@ -29,7 +29,7 @@ constexpr FaultSource source_of(ToldSource told) {
   return told > ToldSource::other ? FaultSource::other : static_cast<FaultSource>(told);
 }
 
-/// `about` is of the source `other` alone.
+/// `about` applies to the source `other` alone.
 constexpr ToldSource told_source(FaultSource source, ToldSource about = ToldSource::other) {
   return source == FaultSource::other ? about : static_cast<ToldSource>(source);
 }

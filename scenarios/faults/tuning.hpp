@@ -48,7 +48,7 @@ std::vector<Eigen::Index> variables_with(const MpcOptions& controller, TuningPar
 /// not a finite number > 0.
 MpcOptions with_tuning(MpcOptions controller, const TuningChange& change);
 
-/// Of which controller S0 is taken in an experiment with a bad tuning.
+/// The controller whose S0 is used in an experiment with a bad tuning.
 enum class TuningSensitivity : std::int8_t {
   current = 0,  ///< the one that runs: S0 is determined anew after a change of tuning (appendix A2)
   design = 1,   ///< that of the study: nobody noticed the change
@@ -56,12 +56,13 @@ enum class TuningSensitivity : std::int8_t {
 
 /// Ranges of the random changes of the tuning.
 struct TuningRanges {
-  /// Relative frequency of each parameter, in their order. One that the controller has not is never drawn.
+  /// Relative frequency of each parameter, in their order. One that the controller does not have is never
+  /// drawn.
   std::array<double, 4> parameter_weight{1.0, 1.0, 1.0, 1.0};
   Distribution factor = Distribution::log_uniform(0.05, 20.0);
   TuningSensitivity sensitivity = TuningSensitivity::current;
 
-  /// Relative frequencies with 0 for the parameters that the controller has not.
+  /// Relative frequencies with 0 for the parameters that the controller does not have.
   std::array<double, 4> weights_for(const MpcOptions& controller) const;
 
   bool operator==(const TuningRanges&) const = default;

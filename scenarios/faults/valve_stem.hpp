@@ -29,9 +29,9 @@ class ValveStem {
 /// deadband without a jump.
 class StickyValve final : public ValveStem {
  public:
-  /// At rest where the signal is `u`. `start` is how far it stands from it, from -1 to 1 of (S + J) / 2, the
-  /// furthest that it can; 0: it stands at u and has come up to it. Errors: InputError unless S and J are
-  /// finite and >= 0.
+  /// At rest where the signal is `u`. `start`, from -1 to 1, is its distance from the signal as a share of
+  /// the largest possible one, (S + J) / 2; 0: it stands at u and has come up to it. Errors: InputError
+  /// unless S and J are finite and >= 0.
   StickyValve(double stickband, double jump, double u, double start = 0.0);
 
   double follow(double u) override;

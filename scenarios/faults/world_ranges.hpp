@@ -15,8 +15,8 @@ struct WorldParameter {
   bool operator==(const WorldParameter&) const = default;
 };
 
-/// The disturbances that are always there: first-order noise of its own on every CV, and on every MV between
-/// controller and plant,
+/// The disturbances that are always there: first-order noise on every CV, and on every MV between controller
+/// and plant, each independent,
 ///
 ///     x(k) = a x(k-1) + sqrt(1 - a^2) s w(k),    a = exp(-1 / time_constant),    w white, normal,
 ///     variance 1.
@@ -35,20 +35,20 @@ struct BackgroundRanges {
 
 /// The distributions of the worlds of a study ([world] of a study file). In a world every channel of the
 /// plant differs a little from the model, small disturbances never stop, and the benchmark is a record of
-/// this plant. The controller and the methods know the model and the benchmark, and nothing else. Every
+/// this plant. The controller and the methods know only the model and the benchmark. Every
 /// number is drawn for each channel, CV or MV by itself.
 struct WorldRanges {
   int count = 8;  ///< worlds, over which the experiments of each kind are spread evenly
   Distribution gain_factor = Distribution::constant(1.0);
   Distribution time_constant_factor = Distribution::constant(1.0);
   Distribution dead_time_factor = Distribution::constant(1.0);
-  /// Added to the dead time, in the time unit of the plant; the dead time that comes out is 0 at least.
+  /// Added to the dead time, in the time unit of the plant; the resulting dead time is at least 0.
   Distribution dead_time_shift = Distribution::constant(0.0);
   /// Time constant of a further lag, over the residence time of the channel.
   Distribution extra_lag = Distribution::constant(0.0);
   Distribution noise_factor = Distribution::constant(1.0);  ///< of the noise of each CV
   /// c of the characteristic of each valve: with hard limits a and b of its MV the plant gets
-  /// u + c (u - a) (b - u) / (b - a), less what this adds where the loop starts. The gain of the MV goes from
+  /// u + c (u - a) (b - u) / (b - a), less the same term where the loop starts. The gain of the MV goes from
   /// 1 + c to 1 - c between its limits, and no model has that.
   Distribution valve_curvature = Distribution::constant(0.0);
   std::vector<WorldParameter> plant_parameters = {};  ///< of a nonlinear plant, instead of channels
@@ -56,7 +56,8 @@ struct WorldRanges {
   int cost_loops = 8;  ///< pairs of loops over whose noise the cost of a fault is an expectation
   /// Loops over whose noise the gain of repairing a channel is an expectation; 0: it is not computed.
   int repair_loops = 4;
-  /// Share of the largest gain below which the first of these loops is the only one of a channel; 0: all run.
+  /// A channel whose gain in the first of these loops is below this share of the largest one gets no further
+  /// loops; 0: all run.
   double repair_screen = 0.0;
 
   bool operator==(const WorldRanges&) const = default;

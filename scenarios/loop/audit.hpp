@@ -66,7 +66,7 @@ class AuditSampler {
  public:
   AuditSampler(std::uint64_t seed, std::int64_t experiment, double share);
 
-  /// To be called after each step (a StepObserver). Of a controller that poses no problems nothing is picked.
+  /// To be called after each step (a StepObserver). Picks nothing from a controller that poses no problems.
   void observe(const Controller& controller);
 
   std::vector<AuditSample> take() { return std::move(samples_); }
@@ -80,7 +80,7 @@ class AuditSampler {
 };
 
 /// Solves audited problems once more by Ipopt. It starts from the answer that it is to check, to save time,
-/// and knows nothing else of it; its own answer is certified by its own KKT residual.
+/// and uses nothing else of that answer; its own answer is certified by its own KKT residual.
 class Auditor {
  public:
   Auditor(const Study& study, const QpSolverFactory& ipopt);

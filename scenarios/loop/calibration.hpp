@@ -19,9 +19,10 @@ inline constexpr std::uint64_t kCalibrationBits = 0x63616C6962726174;
 /// The study whose experiments are the calibration loops: `calibration.healthy` loops without a fault and
 /// `calibration.ud` with a disturbance alone, drawn under calibration_seed(), in `calibration.worlds` worlds
 /// of that seed where the study has worlds. Plant, controller, noise and excitation are those of the study,
-/// random steps included, which are the same in all of its experiments: what a method makes of a healthy loop
-/// depends on how the loop is moved. Its loops are assessed with the basis case of `study` itself, which is
-/// what the methods have learnt. The study must have a calibration. Throws InputError as calibration_seed().
+/// random steps included, which are the same in all of its experiments: the answer of a method for a healthy
+/// loop depends on how the loop is moved. Its loops are assessed with the basis case of `study` itself, which
+/// is what the methods have learnt. The study must have a calibration. Throws InputError as
+/// calibration_seed().
 Study calibration_study(const Study& study);
 
 }  // namespace mpm

@@ -5,9 +5,9 @@
 #include "scenarios/loop/experiment_draw.hpp"
 #include "scenarios/study/study.hpp"
 
-// Signals that a historian keeps beside those of the loop, of which neither controller nor model know
-// anything (study.record.candidates): one of them may drive the disturbance, the others are decoys. No loop
-// is another one with them.
+// Signals that a historian keeps beside those of the loop, and that neither controller nor model know
+// (study.record.candidates): one of them may drive the disturbance, the others are decoys. They do not change
+// any loop.
 
 namespace mpm {
 
@@ -17,7 +17,7 @@ Eigen::Index true_candidate(const Study& study, const ExperimentDraw& draw);
 
 /// The candidates of the experiment, one row each and one column a sample; 0 x 0 without any.
 /// true_candidate() is v as it is before the onset, too, when it does not act yet. A decoy has the form of v
-/// and random numbers of its own, so that nothing but what it does tells it from the cause; it is white noise
+/// and random numbers of its own, so that only its effect distinguishes it from the cause; it is white noise
 /// where v is no random signal, or the experiment has no disturbance. A pure function of its arguments.
 Eigen::MatrixXd logged_candidates(const Study& study, const ExperimentDraw& draw);
 

@@ -51,8 +51,8 @@ inline constexpr auto kWords<LoopFailure> = word_list("none", "solver", "plant",
 /// | d        | d        | nd x N | measured disturbances, d(k) acts from k on; as analysers show them |
 /// | y_set    | y_set    | ny x N | setpoints; empty when no CV has one          |
 ///
-/// They are what a historian of the loop has: of a valve that sticks and of a disturbance on an MV it sees
-/// what the controller asked for, of an MV that is held the value at which it is held, and of the MDs the
+/// They are what a historian of the loop records: for a valve that sticks or an MV with a disturbance, what
+/// the controller asked for; for an MV that is held, the value at which it is held; for MDs, the
 /// measurements.
 struct Trajectory {
   ControlStatus status = ControlStatus::ok;
@@ -121,17 +121,17 @@ using StepObserver = std::function<void(const Controller& controller)>;
 /// the steady state of the nominal model at zero disturbances that Controller::nominal_target() gives for the
 /// first setpoints. The soft limits are those of soft_limits() at each sample.
 ///
-/// Variables are off as `[[simulation.off]]` says, from the sample of a table on: an MV without a level stays
-/// where it acted until then, and has no dither (Controller::set_off()).
+/// `[[simulation.off]]` switches variables off from the sample of a table on: an MV without a level keeps its
+/// last value, and has no dither (Controller::set_off()).
 ///
-/// What acts, and what the record shows, is the move of the controller and the dither, within the hard limits
-/// of the MV. The controller knows it, as one does that is told of a plant test: its model has the MVs that
-/// act, and it plans without the dither.
+/// The move of the controller plus the dither, within the hard limits of the MV, acts on the plant and stands
+/// in the record. The controller knows it, as in an announced plant test: its model has the MVs that act, and
+/// it plans without the dither.
 ///
 /// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
 /// cannot be integrated (status `failed`), and does not begin when the plant has no steady state there
-/// (`failed` as well). Throws InputError when a signal has not the shape that the study
-/// asks for, or the plant another sample time, other outputs or fewer inputs.
+/// (`failed` as well). Throws InputError when a signal does not have the shape that the study asks for, or
+/// the plant has another sample time, other outputs or fewer inputs.
 ///
 /// A controller on a linear model thinks in deviations: a nonlinear plant goes in as a DeviationPlant.
 ///

@@ -9,8 +9,8 @@ namespace mpm {
 
 /// Experiment `index` of the study, with the scales 1: a pure function of (study, seed, index). In a random
 /// experiment with mismatch and disturbance the first ones of both are on the same CV, as (6.23) needs,
-/// unless the disturbance is on an MV or the plant is nonlinear. Throws InputError for a negative index, and
-/// for one that is no scenario of a study of named scenarios.
+/// unless the disturbance is on an MV or the plant is nonlinear. Throws InputError for a negative index, and,
+/// in a study of named scenarios, for one that belongs to none.
 ExperimentDraw draw_experiment(const Study& study, std::int64_t index);
 
 /// The experiment `draw`, which has the scales 1, with these.
@@ -21,8 +21,8 @@ ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultS
 ExperimentDraw basis_draw(int world = kExactWorld);
 
 /// The study with the controller that runs in the experiment: `study` itself unless the draw changes its
-/// tuning. simulate_experiment() does this by itself; to pass it the result would change the tuning twice.
-/// Throws InputError for a weight that the controller has not.
+/// tuning. simulate_experiment() does this itself: do not pass it the result, which would change the tuning
+/// twice. Throws InputError for a weight that the controller does not have.
 Study with_tuning(const Study& study, const ExperimentDraw& draw);
 
 }  // namespace mpm

@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// A place drawn with these relative frequencies, one value of the stream.
+/// A place drawn with these relative frequencies; takes one value from the stream.
 std::size_t draw_place(std::span<const double> weights, RandomStream& stream);
 
 /// The channels from MVs to CVs, row by row. Errors: InputError where there is none.

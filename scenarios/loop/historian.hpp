@@ -8,9 +8,8 @@
 #include "scenarios/study/record_options.hpp"
 #include "scenarios/study/study.hpp"
 
-// What a historian of the plant makes of the measured CVs, and what its reader makes of what it kept. It is
-// what the methods of assessment see of a loop; the controller and the truth have the measurements
-// themselves.
+// How a historian of the plant stores the measured CVs, and how its reader restores them. Methods of
+// assessment see a loop in this form; the controller and the truth have the measurements themselves.
 
 namespace mpm {
 
@@ -32,7 +31,7 @@ namespace mpm {
 ///    stays NaN.
 ///
 /// A pure function of its arguments, with streams of its own; the basis case has kBasisIndex. MVs and
-/// measured disturbances are numbers that the controller computes or is told: nothing else happens to them.
+/// measured disturbances are numbers that the controller computes or receives: nothing else happens to them.
 Trajectory recorded(const Study& study, std::int64_t index, Trajectory loop);
 
 /// The values that a reader gets from a historian with a swinging door (Bristol 1990) for `signal`: an

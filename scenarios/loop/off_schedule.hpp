@@ -20,7 +20,7 @@ class OffSchedule {
   explicit OffSchedule(const Study& study);
 
   /// Goes on to sample k, which is 0, 1, ... in turn, with the MVs `u` (nu) that act until then: one whose
-  /// table has no level stays there. Does the controller have to be told? Allocates nothing.
+  /// table has no level stays there. True when the controller must be told. Allocates nothing.
   bool go_on(Eigen::Index k, const Eigen::Ref<const Eigen::VectorXd>& u);
 
   /// What is off at this sample.

@@ -9,8 +9,8 @@
 namespace mpm {
 
 /// The records of a plant on the samples of the controller of a study, in the study's units and as deviations
-/// from the operating point: what a file of records says under the [data] of the study, CVs and MDs of
-/// analysers as these have shown them.
+/// from the operating point: a file of records read by the [data] of the study. CVs and MDs of analysers are
+/// as these have shown them.
 ///
 /// | symbol   | member       | shape  | meaning                                                         |
 /// |----------|--------------|--------|-----------------------------------------------------------------|
@@ -33,7 +33,7 @@ struct PlantRecord {
   std::vector<std::string> warnings;  ///< a sentence each
 
   Eigen::Index samples() const { return y.cols(); }
-  /// Had operators this variable at sample k?
+  /// Was this variable in the hands of operators at sample k?
   bool has_mv_off(Eigen::Index mv, Eigen::Index k) const { return u_off.size() > 0 && u_off(mv, k) == 1.0; }
   bool has_cv_off(Eigen::Index cv, Eigen::Index k) const { return y_off.size() > 0 && y_off(cv, k) == 1.0; }
 };

@@ -16,7 +16,7 @@ struct RowTime {
   OutputSampling sampling = OutputSampling::snapshot;
   double shift = 0.0;  ///< samples; above 0: a row holds what the variable is later
 
-  /// The sample at or after the time of row 0, and by how many samples it is after it, from 0 to below 1.
+  /// The sample at or after the time of row 0, and its distance from that time in samples, from 0 to below 1.
   Eigen::Index sample() const;
   double delay() const;
   bool is_at_samples() const { return sampling == OutputSampling::snapshot && delay() == 0.0; }
@@ -25,8 +25,8 @@ struct RowTime {
 /// That of a CV, MV or MD of this place. MVs and MDs are held over a sample, and never averaged.
 RowTime row_time(const RecordOptions& record, VariableSort sort, Eigen::Index variable);
 
-/// Rows from what is known at each sample `at_samples` (N or more), with the delay of the row: that of sample
-/// k + sample(), at the ends of the record the nearest one.
+/// Rows from the values at each sample, `at_samples` (N or more), with the delay of the row: the value of
+/// sample k + sample(), or the nearest one at the ends of the record.
 Eigen::RowVectorXd rows_of(const RowTime& time, const Eigen::Ref<const Eigen::RowVectorXd>& at_samples,
                            Eigen::Index rows);
 

@@ -15,8 +15,8 @@ namespace mpm {
 RandomStream experiment_stream(const Study& study, std::int64_t index, StreamId id);
 
 /// The measured disturbances, nd x samples: the same in every experiment of a study, as in figure 6.17.
-/// Steps, and the variation md_noise: from rest in its own variance, v(k) = exp(-Ts/tau) v(k-1) + white
-/// noise. `index` says whose random numbers they are made of (with_excitation()).
+/// Steps, and the variation md_noise, which starts with its stationary variance: v(k) = exp(-Ts/tau) v(k-1) +
+/// white noise. `index` says whose random numbers they are made of (with_excitation()).
 Eigen::MatrixXd measured_disturbances(const Study& study, std::int64_t index = kBasisIndex);
 
 /// The setpoints, ny x samples: the same in every experiment of a study; zero for CVs without a setpoint.

@@ -6,7 +6,7 @@
 namespace mpm {
 
 /// The named random streams of one experiment. The numbers are part of what makes a study repeatable: a new
-/// stream gets the next free number, none is ever given out again.
+/// stream gets the next free number, and no number is ever used again.
 enum class StreamId : std::uint32_t {
   mismatch = 0,            ///< which model is wrong, and by how much
   disturbance_draw = 1,    ///< gain and time constant of the unmeasured disturbance

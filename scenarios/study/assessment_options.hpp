@@ -59,7 +59,7 @@ struct MethodOptionTable {
   std::string name = {};
 };
 
-/// What stands for the setpoint of a CV that the controller holds in a range.
+/// What takes the place of a setpoint for a CV that the controller holds in a range.
 enum class AssessmentSetpoints : std::int8_t {
   controller = 0,  ///< nothing: a method that needs setpoints does not apply
   optimizer = 1,   ///< the steady state that the target optimizer computes (2.32), as chapter 2 does it

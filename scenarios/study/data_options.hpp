@@ -27,7 +27,7 @@ enum class CvResampling { mean, nearest };
 /// rest at the first values, and CVs are not judged before the slowest channel has settled.
 enum class RecordStart { automatic, rest, anywhere };
 
-/// How the columns of a file of records belong to the study: [data] of a study file. Groups of names by
+/// How the columns of a file of records map to the study: [data] of a study file. Groups of names by
 /// variable are empty where the study says nothing; a value of the study is scale (recorded -
 /// operating_point).
 struct DataOptions {

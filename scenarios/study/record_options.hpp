@@ -27,7 +27,7 @@ enum class BadValue : std::int8_t {
 template <>
 inline constexpr auto kWords<BadValue> = word_list("stuck", "off_scale");
 
-/// What the historian makes of the measured CVs that it keeps (historian.hpp). By default: every sample, as
+/// How the historian stores the measured CVs (historian.hpp). By default: every sample, as
 /// it was measured. The sizes are in standard deviations of the measurement noise of the CV
 /// (SimulationOptions::noise_standard_deviation), to which ranges and resolutions of transmitters are chosen.
 struct RecordOptions {
@@ -58,7 +58,7 @@ struct RecordOptions {
   const std::vector<double>& shifts_of(VariableSort sort) const {
     return sort == VariableSort::cv ? cv_shift : sort == VariableSort::mv ? mv_shift : md_shift;
   }
-  /// Are rows of CVs something else than their measurements at the samples?
+  /// Do rows of CVs differ from their measurements at the samples?
   bool resamples() const {
     return sampling == OutputSampling::average ||
            std::any_of(cv_shift.begin(), cv_shift.end(), [](double shift) { return shift != 0.0; });

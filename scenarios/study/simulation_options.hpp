@@ -39,7 +39,7 @@ struct Dither {
   bool operator==(const Dither&) const = default;
 };
 
-/// A CV or an MV that operators have taken from the controller for a while.
+/// A CV or an MV that operators have switched off for a while.
 struct OffSpell {
   VariableSort sort;
   Eigen::Index variable;

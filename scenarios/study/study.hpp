@@ -106,10 +106,11 @@ struct S0PerturbationOptions {
 /// How the distance of Ivar_diag from 1 is measured when the CV is located.
 enum class LocationDistance { linear, logarithmic };
 
-/// What the variances of a CV with a setpoint are taken about. A CV in a range has no choice: its mean.
+/// The point about which the variances of a CV with a setpoint are taken. For a CV in a range it is always
+/// the mean.
 enum class VarianceCentre { setpoint, mean };
 
-/// Which experiments the rates of I_MPM are counted over.
+/// The experiments over which the rates of I_MPM are counted.
 enum class SourcePopulation { impactful, feasible };
 
 /// What becomes of loops that are not stable.
@@ -162,8 +163,8 @@ struct AggregateOptions {
   bool operator==(const AggregateOptions&) const = default;
 };
 
-/// On which loops the thresholds of the methods are calibrated: loops without a fault, and with a disturbance
-/// alone, drawn under another seed (scenarios/loop/calibration.hpp).
+/// The loops on which the thresholds of the methods are calibrated: loops without a fault, and with a
+/// disturbance alone, drawn under another seed (scenarios/loop/calibration.hpp).
 struct CalibrationOptions {
   double false_alarms = 0.05;              ///< share of healthy loops that a calibrated threshold may flag
   int healthy = 200;                       ///< loops without a fault
@@ -188,7 +189,7 @@ struct MonitoringOptions {
   bool operator==(const MonitoringOptions&) const = default;
 };
 
-/// A number that somebody has reported for this study, by the name of the finding that it stands beside.
+/// A published number for this study, by the name of the finding that it is shown beside.
 struct ReportedValue {
   std::string name;
   double value;
@@ -241,10 +242,10 @@ struct Study {
   std::string source;                   ///< the full text of the file
 
   bool names_scenarios() const { return !scenarios.empty(); }
-  /// Is every random experiment one parameter of one channel and white noise on one CV, from the start and as
-  /// drawn, so that a handful of numbers says all of it?
+  /// True when every random experiment has at most one changed parameter of one channel and white noise on
+  /// one CV, from the start and as drawn, so that a few numbers describe it.
   bool has_plain_faults() const;
-  /// Are sizes of faults scaled until the loops have the effect that it asks for?
+  /// True when sizes of faults are scaled until the loops have the effect that the study asks for.
   bool asks_for_impact() const { return mismatch.impact || disturbance.impact || other.impact; }
   /// Experiments of one full run.
   int experiment_count() const {

@@ -139,10 +139,10 @@ OptionKey time_limit(double& value, std::string meaning);
 
 /// A table that may be missing: its keys then have their defaults.
 OptionKey table(std::string name, std::function<OptionKeys()> below, std::string meaning);
-/// A table that is looked at when it is there only.
+/// A table that is read only when it is there.
 OptionKey optional_table(std::string name, std::function<OptionKeys()> below, std::string meaning);
-/// A table of relative frequencies in the order of `weights`, all of the first `required` names or none; what
-/// is left out beside others is 0. `keys` have the names and meanings.
+/// A table of relative frequencies in the order of `weights`, all of the first `required` names or none;
+/// names that are left out beside others have 0. `keys` have the names and meanings.
 OptionKey weights(std::string name, OptionKeys keys, std::size_t required, double* weights,
                   std::string meaning);
 /// Makes a check of what was read before it.

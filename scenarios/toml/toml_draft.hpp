@@ -24,7 +24,7 @@ class TomlDraft {
   void set(std::string_view key, const Value& value) {
     entry(key).value = toml_literal(value);
   }
-  /// Notes what the key would have without a value of its own, for lines().
+  /// Notes the default of a key, for lines().
   template <class Value>
   void set_default(std::string_view key, const Value& value) {
     entry(key).fallback = toml_literal(value);

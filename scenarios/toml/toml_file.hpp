@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// The text of a file, for parse_toml(): of one longer than kMaxTomlBytes only as much as shows that.
-/// `allowed` says what the file should be. Errors: InputError for a file that cannot be read.
+/// The text of a file, for parse_toml(). Of a file longer than kMaxTomlBytes, only as much is read as shows
+/// this. `allowed` says what the file should be. Errors: InputError for a file that cannot be read.
 std::string read_toml_file(const std::filesystem::path& path, const std::string& allowed);
 
 /// The same of a stream that has this name in messages.

@@ -14,7 +14,7 @@ namespace mpm {
 
 /// A view of one table of a TOML document that knows where it stands and which keys it may have.
 ///
-/// What it cannot take it refuses by InputError "FILE:LINE: KEY: found ...; allowed: ...", where KEY is the
+/// It refuses what it cannot take by InputError "FILE:LINE: KEY: found ...; allowed: ...", where KEY is the
 /// whole path ("controller.mv.u1.cost", places in lists counted from 0) and LINE the line of the value or,
 /// for a missing key, of its table. A key that is looked up must be among the allowed ones. The document and
 /// the file name must outlive the view.
@@ -54,7 +54,7 @@ class TomlTable {
       draft_->set(key, value);
   }
 
-  /// Records what the key would have without a value of its own.
+  /// Records the default of a key.
   template <class Value>
   void record_default(std::string_view key, const Value& value) const {
     if (draft_ != nullptr)

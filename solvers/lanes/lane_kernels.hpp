@@ -32,8 +32,8 @@ struct SpringArrays {
   unsigned char* stretched;  ///< one bit a row (force != 0), eight rows a byte
 };
 
-/// What a residual is made of for the limits of rows or variables: vectors of `count` numbers, not padded.
-/// A `slack` widens both limits; null: there is none.
+/// The parts of a residual that come from the limits of rows or variables: vectors of `count` numbers, not
+/// padded. A `slack` widens both limits; null: there is none.
 struct LimitArrays {
   long count;
   const double *value, *lower, *upper, *dual, *slack;
@@ -57,7 +57,7 @@ struct LaneKernels {
   const char* name;  ///< "baseline", "avx2", "avx512"
   bool (*runs_here)();
 
-  /// out = A x in the rows that there are.
+  /// out = A x in the existing rows.
   void (*multiply)(const RowWindows& rows, const double* x, double* out);
   /// out = A x, for the blocks of eight rows, a block column by column, whose columns are those of the listed
   /// numbers of x.
@@ -118,8 +118,8 @@ struct LaneKernels {
 
   /// The largest distance of a value beyond its limits, and 0 at least.
   double (*violation)(const LimitArrays& limits);
-  /// The first row whose value is beyond its limits most, if that is by more than `most`, which it becomes;
-  /// -1 when there is none.
+  /// The first row whose value is furthest beyond its limits, if that is more than `most`, which is then
+  /// updated; -1 when there is none.
   long (*most_violated)(const LimitArrays& limits, double* most);
   /// The largest |dual| times distance to its limit, the upper one of a positive and the lower one of a
   /// negative dual. At an absent limit nothing may push: |dual|.
@@ -128,7 +128,7 @@ struct LaneKernels {
   bool (*ordered)(const double* lower, const double* upper, long count);
   bool (*finite)(const double* values, long count);        ///< no NaN and no infinity
   double (*below_zero)(const double* values, long count);  ///< the largest -value, and 0 at least
-  /// The places of what is not zero, in order, and how many they are.
+  /// The places of the numbers that are not zero, in order, and their count.
   long (*non_zero)(const double* values, long count, int* places);
   /// The multiplier of s >= 0 is 2 q s + c - |pull|: how far one is below zero, or |multiplier s|, the
   /// largest.

@@ -17,8 +17,8 @@ namespace mpm {
 /// have at least the length that the shape says; `out` is followed by room for a multiple of eight.
 ///
 /// Where rows that follow each other have few columns that are not zero, and the same ones (those of a CV
-/// that answers to some of the MVs only), only these columns are kept and worked on. What is left out are
-/// products with zero: the results are the same to the bit (except for the sign of a zero).
+/// that answers to some of the MVs only), only these columns are kept and used. The products left out are
+/// zero: the results are the same to the bit (except for the sign of a zero).
 class LaneProgram {
  public:
   LaneProgram(const Eigen::MatrixXd& hessian, const RowMajorMatrix& rows);
