@@ -59,7 +59,7 @@ CommandResult work(const CommandSet& commands) {
   }
 }
 
-/// What is said of a first word that is neither a command nor an option; empty when it is one.
+/// What is said about a first word that is neither a command nor an option; empty when it is one.
 std::string unknown_command(const std::string& word, const CommandSet& commands) {
   const std::vector<std::string> names = commands.names();
   if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end())

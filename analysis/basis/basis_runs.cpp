@@ -44,7 +44,7 @@ void refuse_without_sensitivity(const Study& study) {
     throw InputError("controller.program", found, "without s0_perturbation: there is no S0 to be modified");
 }
 
-/// The loop without a fault, and what is said of it.
+/// The loop without a fault, and what is said about it.
 void run_loop(const Study& study, const QpSolverFactory& factory, const StepObserver& observer,
               BasisCase& basis) {
   basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);

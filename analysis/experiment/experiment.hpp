@@ -65,7 +65,8 @@ class ExperimentRunner {
   const std::vector<std::shared_ptr<const AssessmentForm>>& forms() const { return panel_.forms(); }
 
  private:
-  /// What is known beforehand of the loops of one world: its benchmark, and the methods that have learnt it.
+  /// What is known about the loops of one world before they run: its benchmark, and the methods that have
+  /// learnt it.
   struct WorldCase {
     BasisCase basis;
     std::unique_ptr<MethodPanel> panel;  ///< null where the benchmark does not run to its end

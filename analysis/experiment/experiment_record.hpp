@@ -42,7 +42,7 @@ struct LoopRecord {
   Eigen::MatrixXd y_sim;  ///< ny x N
 };
 
-/// What only a simulation knows of a loop, y = G(u, d) + y_d + v with the plant G: no method sees it.
+/// What only a simulation knows about a loop, y = G(u, d) + y_d + v with the plant G: no method sees it.
 struct LoopTruth {
   /// A loop with only one of two faults; empty in an experiment with one fault or none, and if the loop with
   /// both does not run to its end.

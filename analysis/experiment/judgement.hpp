@@ -7,11 +7,11 @@
 #include "analysis/experiment/experiment_record.hpp"
 #include "base/enum_words.hpp"
 
-// What is right and what is wrong: the one place where the answer of a method is held against the truth.
+// What is right and what is wrong: the one place where the answer of a method is compared with the truth.
 
 namespace mpm {
 
-/// What one question about an answer came to.
+/// The result of one question about an answer.
 enum class Correctness : std::int8_t {
   not_judged,  ///< the question does not arise: no verdict, or the experiment is outside of the population
   wrong,
@@ -47,7 +47,7 @@ struct CvJudgement {
 /// | candidate        | is the named signal the cause             | flagged, a logged signal drives the
 /// disturbance | | cvs              | is every CV judged rightly                | named scenarios |
 ///
-/// Of a loop that is not flagged no channel and no mismatch is named.
+/// In a loop that is not flagged, no channel and no mismatch is named.
 struct Judgement {
   Correctness predicted_cv = Correctness::not_judged;
   Correctness predicted_source = Correctness::not_judged;
@@ -91,12 +91,12 @@ FaultSource named_source(const AssessmentRecord& assessment);
 /// disturbance `other` is, and `none`.
 bool names_source(ExperimentKind fault, FaultSource named);
 
-/// Is the fault told from the others (mismatch, disturbance, both, another one)? The loop must have a fault.
-/// Nothing said is not right. Of a fault that is neither of them the right answer is a flagged loop with the
-/// source `other`, or, by a method that has no word for it, without a source.
+/// True when the answer distinguishes the fault from the others (mismatch, disturbance, both, other). The
+/// loop must have a fault. Nothing said is not right. Of a fault that is neither of them the right answer is
+/// a flagged loop with the source `other`, or, by a method that has no word for it, without a source.
 bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessment);
 
-/// Which loops a method is right to flag, and no others.
+/// The loops that a method should flag; it should flag no others.
 enum class FlagTruth : std::int8_t {
   fault = 0,   ///< those with a fault: the task of a monitor of the model
   impact = 1,  ///< those with a fault that has an impact: the task of a monitor of the performance

@@ -10,7 +10,7 @@
 #include "analysis/methods/ours/repair_prospects.hpp"
 #include "scenarios/loop/experiment_draw.hpp"
 
-// What an engineer does with a named channel: correct it, and put it into the controller.
+// An engineer corrects a named channel and puts it into the controller.
 
 namespace mpm {
 

@@ -36,7 +36,7 @@ struct RepairGains {
 
   /// The gain of the best repair; none if no gain is positive beyond chance, that is, above twice its error.
   std::optional<double> best() const;
-  /// The share of it that the repair of this channel brings, at least 0; 0 of no channel. There must be a
+  /// The share of it that the repair of this channel gains, at least 0; 0 for no channel. There must be a
   /// best one.
   double share_of(const std::optional<Channel>& channel) const;
 };

@@ -6,7 +6,7 @@
 #include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 
-// What every repair of a model rests on, whether it is the true one or was identified.
+// The common basis of all repairs of a model, true or identified.
 
 namespace mpm {
 

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// What is found in records that come one after the other, so that many findings need one pass.
+/// Collects findings from records that come one after the other, so that many findings need one pass.
 template <class Result>
 struct Collector {
   std::function<void(const ExperimentRecord&)> add;

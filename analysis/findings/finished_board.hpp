@@ -7,7 +7,7 @@
 
 namespace mpm {
 
-/// What methods have said of every loop of a suite, kept so that others can be held against it.
+/// What methods have said about every loop of a suite, kept so that others can be compared with it.
 struct FinishedBoard {
   std::string program;   ///< version of the program that ran it
   std::string revision;  ///< of its source

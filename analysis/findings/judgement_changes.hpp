@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// What one question to an experiment came to, which was run twice.
+/// The two results of one question to an experiment that was run twice.
 struct JudgementPair {
   std::int64_t index;
   Correctness before, now;

@@ -26,9 +26,9 @@ struct MethodScores {
   std::string reason;       ///< why there was no verdict on the first loop without one; empty: on every loop
   std::int64_t failed = 0;  ///< loops on which it was asked and failed
   Rates rates = Rates();
-  /// Of several cells only means that keep their clusters: medians cannot be added up.
+  /// For several cells there are only means that keep their clusters: medians cannot be added up.
   Estimates estimates = {};
-  /// Of one cell: what it said of each loop (MethodRates::outcomes), and which rates that decides.
+  /// For one cell: its answer for each loop (MethodRates::outcomes), and the rates that these decide.
   LoopOutcomes outcomes = {};
   OutcomeScope scope = {};
   Reliability reliability = {};  ///< of the probabilities that it states, if it does
@@ -36,7 +36,7 @@ struct MethodScores {
   const Rate& operator[](std::string_view rate) const { return rates[rate]; }
 };
 
-/// What a cell of a suite gave.
+/// The results of one cell of a suite.
 struct CellScores {
   std::size_t plant = 0;   ///< place in Suite::plants
   std::size_t family = 0;  ///< place in Suite::families

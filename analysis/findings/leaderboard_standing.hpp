@@ -15,7 +15,7 @@ namespace mpm {
 /// All duels of a method together call one that is equally good better or worse so often at most.
 inline constexpr double kDuelSignificance = 0.05;
 
-/// A method against another one on the same loops of a leaderboard.
+/// Compares two methods on the same loops of a leaderboard.
 struct BoardDuel {
   std::size_t other = 0;  ///< place in Leaderboard::methods
   std::int64_t loops = 0;
@@ -52,7 +52,7 @@ struct InformationPair {
   std::size_t without = 0, with = 0;  ///< places in Leaderboard::methods
 };
 
-/// Of each method that a board has in both ways, in the order of the board.
+/// For each method that a board has in both ways, in the order of the board.
 std::vector<InformationPair> information_pairs(const Leaderboard& board);
 
 /// None where the method has no calibrated threshold, or no other one has the rate.

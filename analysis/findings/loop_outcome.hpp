@@ -9,7 +9,7 @@
 #include "analysis/findings/calibration.hpp"
 #include "scenarios/faults/told_source.hpp"
 
-// What the rates of methods ask of a loop, and of what a method said of it: a few facts, so that finished
+// The facts about a loop, and about the answer of a method, that rates are made from; so few that finished
 // results can be kept, counted again, and held against those of another method loop by loop.
 
 namespace mpm {
@@ -27,7 +27,7 @@ struct FaultTruth {
   bool operator==(const FaultTruth&) const = default;
 };
 
-/// What a method said of a loop. A fact more is a member here, a row in outcome_facts(), and what
+/// What a method said about a loop. A fact more is a member here, a row in outcome_facts(), and what
 /// outcome_of() puts into it.
 struct LoopOutcome {
   bool answered = false;

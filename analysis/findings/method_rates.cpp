@@ -34,7 +34,7 @@ struct LoopMeasures {
 
 namespace {
 
-/// A loop that a method has looked at, and what can be said of its answer.
+/// A loop that a method has looked at, and what can be said about its answer.
 struct SeenLoop {
   const Study& study;
   const ExperimentRecord& record;

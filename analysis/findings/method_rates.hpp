@@ -29,7 +29,7 @@ struct VerdictFailures {
   void add(const VerdictFailures& more);
 };
 
-/// What is measured of the loops that a method has looked at, from which its estimates are made.
+/// The measured values of the loops that a method has assessed, from which its estimates are made.
 struct LoopMeasures;
 
 /// A number of a method that is no share of loops.
@@ -132,7 +132,7 @@ enum class FalseAlarmMark : std::int8_t {
 template <>
 inline constexpr auto kWords<FalseAlarmMark> = word_list("", "fewer", "more");
 
-/// What a rate of false alarms is held against when the method states none.
+/// The rate with which a rate of false alarms is compared when the method states none.
 inline constexpr double kUsualFalseAlarms = 0.05;
 
 FalseAlarmMark false_alarm_mark(const MethodDescription& method, const MethodRates& rates);

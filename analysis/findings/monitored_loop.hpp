@@ -7,7 +7,7 @@
 #include "analysis/experiment/experiment_record.hpp"
 #include "base/non_finite.hpp"
 
-// What comes of a method that watches a loop through a moving window.
+// The results of a method that watches a loop through a moving window.
 
 namespace mpm {
 
@@ -26,7 +26,7 @@ struct MonitoredLoop {
 MonitoredLoop monitored_loop(const Study& study, const ExperimentRecord& record,
                              const AssessmentRecord& assessment);
 
-/// Days in a time unit: "s", "min", "h" or "d"; none of another one.
+/// Days in a time unit: "s", "min", "h" or "d"; none for other units.
 std::optional<double> days_in(std::string_view time_unit);
 
 }  // namespace mpm

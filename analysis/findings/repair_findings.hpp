@@ -23,7 +23,7 @@ template <>
 inline constexpr auto kWords<RepairTarget> = word_list("a mismatched channel", "another channel",
                                                        "no mismatch");
 
-/// What the repair of one experiment came to; the loops must compare.
+/// The result of the repair of one experiment; its loops must be comparable.
 struct RepairOutcome {
   std::int64_t index;
   RepairTarget target;

@@ -38,7 +38,7 @@ struct RunPairing {
 
 RunPairing pair_runs(const StudyRun& before, const StudyRun& now);
 
-/// How a rate of a method changed. Of paired runs the loops in common alone are looked at.
+/// How a rate of a method changed. For paired runs only the common loops count.
 struct RateChange {
   const RateRow* row;
   Rate before, now;            ///< each over all loops that it counts in this run
@@ -58,7 +58,7 @@ struct VerdictQuestion {
 /// Every question once, in the order in which people read them.
 std::span<const VerdictQuestion> verdict_questions();
 
-/// What became of one question over paired loops.
+/// How the answers to one question changed over paired loops.
 struct VerdictChange {
   const VerdictQuestion* question;
   JudgementChanges changes = {};
@@ -92,7 +92,7 @@ struct MethodChange {
 std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun& now,
                                          const RunPairing& pairing);
 
-/// The same of paired runs without rates and numbers, which take longer.
+/// The same for paired runs, without rates and numbers, which take longer.
 std::vector<MethodChange> verdict_changes(const StudyRun& before, const StudyRun& now);
 
 }  // namespace mpm

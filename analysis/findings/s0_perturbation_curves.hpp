@@ -7,7 +7,7 @@
 #include "analysis/statistics/interval.hpp"
 #include "base/non_finite.hpp"
 
-// What the modified models of s0_perturbation.hpp do to Ivar_diag over the experiments of a study.
+// The effect of the modified models of s0_perturbation.hpp on Ivar_diag over the experiments of a study.
 
 namespace mpm {
 

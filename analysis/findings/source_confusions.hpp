@@ -7,7 +7,7 @@
 #include "base/enum_words.hpp"
 #include "scenarios/faults/told_source.hpp"
 
-// What is true of loops against what a method answers about them at its own threshold.
+// The true sources of loops against the answers of a method at its own threshold.
 
 namespace mpm {
 

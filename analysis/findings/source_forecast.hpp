@@ -7,12 +7,12 @@
 #include "analysis/findings/leaderboard.hpp"
 #include "analysis/methods/source_probabilities.hpp"
 
-// What stated probabilities of sources are held against: the forecast that states of every loop how often
+// The reference for stated probabilities of sources: the forecast that states for every loop how often
 // each source is the truth on the whole board, whatever the record shows (in meteorology: climatology).
 
 namespace mpm {
 
-/// How often each source is the truth of a loop of the board; none of a board without loops.
+/// How often each source is the truth in a loop of the board; none for a board without loops.
 std::optional<SourceProbabilities> source_frequencies(const Leaderboard& board);
 
 /// Mean scores; NaN of no loop.

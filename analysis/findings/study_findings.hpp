@@ -19,7 +19,7 @@
 
 namespace mpm {
 
-/// What a study shows of one method.
+/// The findings of a study about one method.
 struct MethodFindings {
   std::shared_ptr<const AssessmentForm> form;
   std::vector<KindFindings> kinds;        ///< the kinds with a fault that the study has

@@ -26,8 +26,8 @@ struct TrialFindings {
   Rate as_high = {};      ///< loops without a fault whose score is as high as that of the record
   Rate same_source = {};  ///< of the flagged loops with the source that the answer names, those that have it
 
-  /// The threshold against which the `place`-th loop without a fault counts where something is said of these
-  /// loops: that of the other half, because it has helped to set `threshold` itself.
+  /// The threshold against which the `place`-th loop without a fault counts where something is said about
+  /// these loops: that of the other half, because it has helped to set `threshold` itself.
   double threshold_for(std::size_t place) const { return of_half[1 - place % 2]; }
 };
 

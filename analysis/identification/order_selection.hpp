@@ -64,7 +64,7 @@ struct OrderCandidate {
   double bic = 0.0;
 };
 
-/// What came out of a selection.
+/// The result of a selection.
 struct OrderSelection {
   std::vector<OrderCandidate> candidates;  ///< in the order given
   std::optional<std::size_t> best;         ///< none when no candidate has a usable status and a criterion

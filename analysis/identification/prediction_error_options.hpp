@@ -9,7 +9,7 @@ namespace mpm {
 
 /// Options of `identify_prediction_error`.
 struct PredictionErrorOptions {
-  /// What was before the record.
+  /// The signals before the start of the record.
   StartState start = StartState::rest;
   /// The first sample whose prediction error counts. A later one lets the error of a wrong `start` decay.
   Eigen::Index first_sample = 0;

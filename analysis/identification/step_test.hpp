@@ -8,14 +8,14 @@
 
 namespace mpm {
 
-/// How the plant of a study is tried out.
+/// How the step test of a plant is run.
 struct StepTestOptions {
   Eigen::VectorXd sizes;  ///< of the step of each MV and then each MD, > 0
   int samples = 0;        ///< of each response, > 0
   bool noise = false;     ///< with the measurement noise of the study
 };
 
-/// What a step of one input did to the CVs.
+/// The effect of a step of one input on the CVs.
 ///
 /// | name      | shape       | meaning                                                               |
 /// |-----------|-------------|-----------------------------------------------------------------------|

@@ -14,7 +14,7 @@
 
 namespace mpm {
 
-/// What only the chain asks of [diagnosis] in a study.
+/// The options of [diagnosis] in a study that only the chain uses.
 struct ChainOptions {
   double mpm_threshold = 0.1;  ///< I_MPM above it: model-plant mismatch
 

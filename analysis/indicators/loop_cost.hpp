@@ -21,14 +21,14 @@ struct LoopCost {
   Eigen::VectorXd cv, violation;
   double effort = 0.0, economics = 0.0;
 
-  /// What the controller minimises: the sum over the CVs, and the effort.
+  /// The objective of the controller: the sum over the CVs, and the effort.
   double total() const { return cv.sum() + effort; }
 };
 
 /// The cost of a loop of `study`, whose status must be ok, over the samples that count; empty: all of them.
 LoopCost loop_cost(const Study& study, const Trajectory& loop, const std::vector<bool>& counted = {});
 
-/// What a CV costs that integrates and has soft limits as well as a setpoint.
+/// The cost of a CV that integrates and has soft limits as well as a setpoint.
 enum class LevelCost {
   as_others,  ///< the distance to its setpoint, as any CV with one
   in_range,   ///< that outside of its soft limits: within them a level is there to wander

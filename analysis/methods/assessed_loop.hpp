@@ -104,7 +104,7 @@ std::shared_ptr<AssessedLoop> same_window(const AssessedLoop& loop, AssessedLoop
 std::shared_ptr<const AssessedLoop> with_analyses_held(const Study& study, const AssessedLoop& loop,
                                                        AnalysesHeld from);
 
-/// What is known of the errors of the model where nothing is wrong.
+/// What is known about the errors of the model where nothing is wrong.
 class ModelCorrection {
  public:
   ModelCorrection() = default;
@@ -127,9 +127,9 @@ struct AssessmentContext {
   QpSolverFactory factory;
   /// A period in which the controller worked as designed; none if no such period is known.
   std::optional<AssessedLoop> benchmark = {};
-  /// The study of the loop of the benchmark, where its excitation is another one; null: `study`.
+  /// The study of the benchmark loop, if its excitation is different; null: `study`.
   std::shared_ptr<const Study> benchmark_study = {};
-  /// What the benchmark shows of the errors of the model; null: the model is taken for exact.
+  /// What the benchmark shows of the errors of the model; null: the model is taken to be exact.
   std::shared_ptr<const ModelCorrection> correction = {};
   std::shared_ptr<const DerivedValues> of_benchmark = std::make_shared<const DerivedValues>();
   DerivedValues derived = {};

@@ -27,7 +27,7 @@ std::string missing_samples(const Study& study, const Eigen::MatrixXd& y) {
                            study.plant.cvs[static_cast<std::size_t>(worst)].name);
 }
 
-/// Which score of a verdict is no number; none where all are. Nothing need be said of a CV.
+/// Which score of a verdict is no number; none where all are. Nothing need be said about a CV.
 std::optional<std::string> missing_score(const Study& study, const Assessment& assessment) {
   for (std::size_t cv = 0; cv < assessment.cvs.size(); ++cv)
     if (assessment.cvs[cv].flagged && std::isnan(assessment.cvs[cv].score))

@@ -42,7 +42,7 @@ enum class ModelInformation : std::int8_t {
   nominal,  ///< nothing: y_sim is that of the nominal model
   shown,    ///< y_sim of loop and benchmark contains them: the method sees the changes since the benchmark
   learnt,   ///< it asks for them itself
-  denied,   ///< it asks for them and is told nothing
+  denied,   ///< it asks for them and receives none
 };
 
 template <>
@@ -55,7 +55,7 @@ inline constexpr auto kWords<ModelInformation> = word_list("not used", "nominal"
 /// study with monitoring.
 enum class NumberScope { loop, cv, channel, cv_lag, window };
 
-/// What becomes of a number in the findings of a study.
+/// How the findings of a study summarise a number.
 enum class NumberFinding {
   none,
   summary,    ///< least, mean and largest value over the experiments of each kind; of the whole loop only

@@ -40,7 +40,7 @@ struct NumberPlace {
 ///
 /// | name            | scope   | of methods that |
 /// |-----------------|---------|-----------------|
-/// | cv_flagged      | cv      | locate CVs: 1 flagged, 0 not; NaN: nothing is said of it |
+/// | cv_flagged      | cv      | locate CVs: 1 flagged, 0 not; NaN: nothing is said about it |
 /// | cv_score        | cv      | locate CVs: CvAssessment::score                          |
 /// | cv_source       | cv      | tell sources: FaultSource of a flagged CV or the worst one |
 /// | channel_flagged | channel | name channels: 1 for a channel that is named, 0 for others |

@@ -13,7 +13,7 @@
 
 namespace mpm {
 
-/// What the controller holds a CV at.
+/// The value at which the controller holds a CV.
 enum class ConstraintKind : std::int8_t { lower_limit = 0, upper_limit = 1, setpoint = 2 };
 
 template <>

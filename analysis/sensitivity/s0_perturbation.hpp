@@ -8,7 +8,7 @@
 #include "analysis/sensitivity/second_order_fit.hpp"
 #include "scenarios/study/study.hpp"
 
-// What an error in S0 costs ("Sensitivity of S0" in 6.5.2, figures 6.25 to 6.29): the diagonal of S0 is
+// The effect of an error in S0 ("Sensitivity of S0" in 6.5.2, figures 6.25 to 6.29): the diagonal of S0 is
 // modified in time constant or damping, and Ivar_diag (6.8) is computed again.
 
 namespace mpm {

@@ -21,7 +21,7 @@ namespace mpm {
 /// A method with a threshold is asked again about every loop whose key is a multiple of it.
 inline constexpr std::int64_t kCheckedLoops = 16;
 
-/// What is known of a loop before it is run.
+/// What is known about a loop before it is run.
 struct KnownLoop {
   /// With its loop where its status is ok, and with the answers that are known.
   ExperimentRecord record;
@@ -38,7 +38,7 @@ struct KnownLoop {
 };
 
 /// The loops of one campaign that an earlier run has left in a cache, each with its truth, and what methods
-/// of this program have said of them: what decides on them is the program with the libraries and the
+/// of this program have said about them: what decides on them is the program with the libraries and the
 /// processor that it runs on, text and seed of the study, the solver, and whether threads or worker processes
 /// run. Answers of outside programs are not kept, since they may depend on anything, unless the method says
 /// what its threshold is (RunOptions::threshold_options): then they are kept for every threshold, and one
@@ -106,7 +106,7 @@ class LoopMemory {
 };
 
 /// Leaves what is new in the cache when its scope ends, also by an exception: what an interrupted run has
-/// done is kept as well. `warn`, unless it is empty, is told why that cannot be done.
+/// done is kept as well. `warn`, unless it is empty, receives the reason if that cannot be done.
 class KeepAtEnd {
  public:
   KeepAtEnd(LoopMemory* memory, std::function<void(const std::string&)> warn)

@@ -22,7 +22,7 @@ class ExperimentWork;
 class LoopMemory;
 struct KnownLoop;
 
-/// How many experiments a run has. Throws InputError for a number that the study has not.
+/// How many experiments a run has. Throws InputError for a number that the study does not have.
 std::int64_t experiment_count(const Study& study, const RunOptions& options);
 
 /// How many calibration loops it has; 0 when the study asks for none.

@@ -16,7 +16,7 @@ namespace mpm {
 /// The campaign in this archive, when it is there and whole and what this run would make of the study: the
 /// same text, seed, methods, solver, number of experiments and program. Shards beside it are removed: they
 /// are of a run that was killed between archive and clean-up. Of an archive that cannot be read `warn`,
-/// unless it is empty, is told why it will be replaced.
+/// unless it is empty, receives the reason why it will be replaced.
 std::optional<Campaign> kept_campaign(const std::filesystem::path& archive, const Study& study,
                                       const RunOptions& options,
                                       const std::function<void(const std::string&)>& warn);
@@ -35,7 +35,7 @@ std::vector<std::string> methods_without(const Campaign& campaign, const Study& 
 Campaign run_and_keep(const std::filesystem::path& archive, const Study& study, RunOptions options,
                       CampaignHooks hooks, const std::string& command);
 
-/// What came of a study whose archive is kept.
+/// The outcome of a study whose archive is kept.
 struct KeptRun {
   std::optional<Campaign> campaign = {};  ///< none: it cannot be run
   std::string trouble = {};               ///< why

@@ -12,7 +12,7 @@ using AddCommand = void(CommandSet& commands);
 
 AddCommand add_init;         // writes a study of your own plant
 AddCommand add_init_method;  // writes a method of your own, with one function to fill in
-AddCommand add_methods;      // the methods of assessment, and what one of them is told and says
+AddCommand add_methods;      // the methods of assessment; the input and the answers of one of them
 AddCommand add_run;          // runs a study and writes its archive
 AddCommand add_merge;        // makes the archive of parts that were run on several machines
 AddCommand add_validate;     // what is implausible in a study, what it will show and cost
@@ -26,15 +26,15 @@ AddCommand add_check_board;  // are the results of a method complete, and does a
 AddCommand add_report;       // what a study found, as a page and figures
 AddCommand add_plot;         // draws the loop of one experiment
 AddCommand add_compare;      // several methods of assessment on the loops of an archive
-AddCommand add_assess;       // records of a plant: what the methods say of them, and how far to trust it
-AddCommand add_repair;       // identifies a named channel again, and says what the repaired controller brings
-AddCommand add_reproduce;    // the tables of the thesis
-AddCommand add_export;       // a table of an archive as CSV
-AddCommand add_cache;        // the loops that are kept for the next suite
-AddCommand add_list;         // the shipped studies
-AddCommand add_show;         // the text of one of them
-AddCommand add_manual;       // the manual page, from the declarations of all commands
-AddCommand add_completion;   // what completes them in a shell
+AddCommand add_assess;       // records of a plant: what the methods say about them, and how far to trust it
+AddCommand add_repair;  // identifies a named channel again, and estimates the gain of the repaired controller
+AddCommand add_reproduce;   // the tables of the thesis
+AddCommand add_export;      // a table of an archive as CSV
+AddCommand add_cache;       // the loops that are kept for the next suite
+AddCommand add_list;        // the shipped studies
+AddCommand add_show;        // the text of one of them
+AddCommand add_manual;      // the manual page, from the declarations of all commands
+AddCommand add_completion;  // what completes them in a shell
 
 /// Commands that serve one task, in the order of the help.
 struct Task {

@@ -157,7 +157,7 @@ std::string words_on_guesses(const DataSketch& data, const std::vector<std::stri
   return text + "\n";
 }
 
-/// [data] alone, where nothing is said of the plant.
+/// [data] alone, where nothing is said about the plant.
 ExitCode init_data(const InitArguments& arguments) {
   PlantModel plant;
   plant.time_unit = arguments.words.time_unit;

@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// What a run reads, decides and does, for who asks for it by --verbose; on stderr.
+/// Tells on stderr what a run reads, decides and does, if the user asks for it by --verbose.
 class Narrator {
  public:
   Narrator(bool verbose, Progress& progress) : verbose_(verbose), progress_(progress) {}

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// What `init` is told of a plant, as it is typed: in options, or as answers.
+/// What the user tells `init` about a plant, as it is typed: in options, or as answers.
 struct SketchWords {
   std::string cvs, mvs, mds;  ///< names separated by commas, or how many
   std::string time_unit = "min";

@@ -25,9 +25,10 @@ struct StepModel {
   std::vector<std::string> cvs() const;
   /// But for these, in the order of the columns.
   std::vector<std::string> inputs_but(const std::vector<std::string>& mds) const;
-  /// Puts the channels where the plant has none. Errors: InputError for a variable that the plant has not.
+  /// Puts the channels where the plant has none. Errors: InputError for a variable that the plant does not
+  /// have.
   void put_into(PlantModel& plant) const;
-  /// What each fit is and leaves, a line a channel.
+  /// Each fit and its error, a line a channel.
   std::string report() const;
 };
 

@@ -37,7 +37,7 @@ class Progress {
 
   /// From any thread.
   bool stop_requested() const { return signals_.received(); }
-  /// What stopped the work, and where: "SIGINT: stopped when ...".
+  /// The reason why the work stopped, and where: "SIGINT: stopped when ...".
   std::string explain(const Interrupted& error) const;
   /// Throws std::runtime_error with that text when a stop was requested and something is left to do.
   void end_when_requested() const;

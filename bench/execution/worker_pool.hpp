@@ -18,7 +18,7 @@ enum class TaskEnd : std::int64_t {
   surroundings  ///< neither: is_of_surroundings(), ProcessEnd::from_outside
 };
 
-/// What became of one task.
+/// The outcome of one task.
 struct TaskResult {
   std::int64_t id;
   TaskEnd end;

@@ -19,7 +19,7 @@ class BadArchive : public std::runtime_error {
 /// when somebody has written into the file since.
 Campaign stream_input(const std::string& archive);
 
-/// The experiment of this index. Throws InputError, which names the indices that there are.
+/// The experiment of this index. Throws InputError that names the existing indices.
 ExperimentRecord experiment_of(const Campaign& campaign, std::int64_t index);
 
 }  // namespace mpm

@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// What came of one experiment.
+/// The outcome of one experiment.
 struct ExperimentOutcome {
   ExperimentRecord record;
   std::vector<AuditSample> samples = {};  ///< steps that are still to be audited
@@ -30,7 +30,7 @@ class OutcomeBytes {
   std::string to_bytes(const ExperimentOutcome& outcome) const;
 
   /// The outcome again. Throws std::runtime_error when the bytes are too short or too long, InputError for an
-  /// experiment that the study has not.
+  /// experiment that the study does not have.
   ExperimentOutcome from_bytes(std::string_view bytes) const;
 
   /// What of their records is not the same, by name.

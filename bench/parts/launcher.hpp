@@ -42,7 +42,7 @@ std::optional<std::string> process_environment(const char* name);
 /// known.
 PartNumber parse_part(std::string_view text, const Environment& environment);
 
-/// Of things that are done one after the other, is the one at this place in the part? Every Nth is, from the
+/// True when the item at this place of a sequence belongs to the part. Every Nth is, from the
 /// Ith on; all are without a part.
 bool is_in_part(std::size_t place, const std::optional<PartNumber>& part);
 

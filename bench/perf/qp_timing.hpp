@@ -12,7 +12,7 @@ enum class StartOfSolve {
   cold,  ///< every program starts from nothing
 };
 
-/// What the solves of one sequence took and how good their answers were.
+/// The times of the solves of one sequence, and the accuracy of their answers.
 ///
 /// The time of a program is the median over the passes, so that what else the machine does counts as little
 /// as it can; the quantiles are those over the programs of the sequence.

@@ -43,7 +43,7 @@ class SparseLoop {
  public:
   SparseLoop(const PlantSize& size, SlackForm slack);
 
-  /// What one loop took, sample by sample.
+  /// The times of one loop, sample by sample.
   struct Times {
     std::vector<double> step;  ///< microseconds of processor time, the whole step of the controller
     double making = 0.0;       ///< seconds to make the controller

@@ -67,7 +67,7 @@ class ShardStore {
   void clear();
 
   bool has(std::int64_t key) const { return done_.has(key); }
-  /// Those of the keys that it has not, in their order.
+  /// Those of the keys that it does not have, in their order.
   std::vector<std::int64_t> missing(const std::vector<std::int64_t>& keys) const;
   /// Wall-clock time that the work in the shards took, in s.
   double seconds() const { return seconds_; }

@@ -52,7 +52,7 @@ struct Campaign {
   /// In place of `records`, when these are too many for the memory: findings_of(), write_archive() and
   /// summary_document() take them from here. Never in a study of named scenarios.
   std::optional<RecordRange> streamed = {};
-  /// What the methods say of the calibration loops, none of them kept; no loops unless the study asks for
+  /// What the methods say about the calibration loops, none of them kept; no loops unless the study asks for
   /// them.
   Calibration calibration;
   std::vector<AuditedStep> audit;  ///< in the order of experiment and step
@@ -74,7 +74,7 @@ RecordRange records_of(const Campaign& campaign);
 /// All of it that is compared with another run. `forms`: forms_of(campaign), which must outlive it.
 StudyRun study_run(const Campaign& campaign, const AssessmentForms& forms);
 
-/// What it has found.
+/// Its findings.
 StudyFindings findings_of(const Campaign& campaign);
 
 }  // namespace mpm

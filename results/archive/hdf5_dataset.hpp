@@ -36,7 +36,7 @@ Shape shape_of_dataset(const Place& place, const Handle& dataset);
 /// The space of a variable of this shape with `count` rows from `first` on chosen.
 Handle rows_of_space(const Place& place, const Shape& shape, hsize_t first, hsize_t count);
 
-/// What is chosen in the space of a variable, or all of it.
+/// The selected part of the space of a variable, or all of it.
 template <class T>
 std::vector<T> read_dataset(const Place& place, const Handle& dataset, const Handle& chosen);
 template <class T>

@@ -11,7 +11,7 @@
 #include "results/assess/record_verdict_text.hpp"
 #include "scenarios/study/study.hpp"
 
-// What is said of a record of a plant, sentence by sentence.
+// The assessment of a record of a plant, sentence by sentence.
 
 namespace mpm {
 

@@ -12,7 +12,7 @@
 #include "results/document/document.hpp"
 #include "scenarios/study/study.hpp"
 
-// How repairs are told, of a record of a plant (`assess`) and of an experiment (`repair`).
+// The texts about repairs, of a record of a plant (`assess`) and of an experiment (`repair`).
 
 namespace mpm {
 

@@ -12,7 +12,7 @@
 #include "analysis/methods/method_messages.hpp"
 #include "results/archive/campaign.hpp"
 
-// The loops of a campaign without the truth: for somebody who is to assess them and not to know what is
+// The loops of a campaign without the truth: for somebody who assesses them and must not know what is
 // wrong.
 
 namespace mpm {

@@ -24,7 +24,7 @@ struct OutsideVerdicts {
 /// with any method; of calibration loops no windows are kept.
 ///
 /// Errors: InputError "FILE:LINE: COLUMN: found ...; allowed: ..." for a file that cannot be read, other
-/// columns, another value, a loop that there is not or that stands there twice, verdicts on other loops; and
+/// columns, another value, an unknown loop, a loop that stands there twice, verdicts on other loops; and
 /// for a name that is none or that a method of this program has.
 OutsideVerdicts read_verdicts(const std::filesystem::path& path, const std::string& name,
                               const Campaign& campaign);

@@ -16,9 +16,9 @@
 #include "base/non_finite.hpp"
 #include "results/plot/figure.hpp"
 
-// What a result says, once: sections of sentences, tables of typed cells, and figures. The writers make of it
-// a text for a terminal (document_text.hpp), a page (document_html.hpp), Markdown (document_markdown.hpp) and
-// JSON (document_json.hpp).
+// The content of a result, once: sections of sentences, tables of typed cells, and figures. The writers make
+// of it a text for a terminal (document_text.hpp), a page (document_html.hpp), Markdown
+// (document_markdown.hpp) and JSON (document_json.hpp).
 //
 // Words are labels (results/plot/plot_text.hpp: `_{...}` is a subscript, foreign text goes through
 // as_label()), with further marks that these functions make. A terminal shows the words alone.
@@ -156,7 +156,7 @@ struct Html {
   std::string text;
 };
 
-/// What is said of one question, in the order of reading.
+/// What is said about one question, in the order of reading.
 struct Section {
   std::string id;  ///< its anchor
   std::string title;

@@ -9,7 +9,7 @@ namespace mpm {
 
 /// Columns.
 inline constexpr std::size_t kTerminalWidth = 100;
-/// Of a table that is not to be broken.
+/// Width of a table that must not be broken.
 inline constexpr std::size_t kUnlimitedWidth = 10000;
 
 /// A sentence in lines of at most `width` characters where a word allows it, all but the first set in.

@@ -8,7 +8,7 @@
 namespace mpm {
 
 inline constexpr std::size_t kLongestCsvName = 1000;  ///< bytes of the name of a column
-/// Of a file of somebody else: columns, and rows times columns.
+/// Limits for a file of somebody else: columns, and rows times columns.
 inline constexpr std::size_t kMostForeignColumns = 50'000, kMostForeignCells = 50'000'000;
 
 /// How a CSV text may differ from the usual one.

@@ -65,7 +65,7 @@ constexpr BoardQuestion kBoardQuestions[] = {{"quiet", "false_alarm_healthy", fa
                                              {"located", "located"},
                                              {"source", "source_all"}};
 
-/// A cell of a run, and what one method said of its loops.
+/// A cell of a run, and what one method said about its loops.
 struct MethodLoops {
   const CellScores& cell;
   const MethodScores& scores;

@@ -40,7 +40,7 @@ struct BaselineComparison {
   const BaselineChanges* of(const GateResult& result) const;
 };
 
-/// What the gates say of a run.
+/// What the gates say about a run.
 struct GateCheck {
   std::string name;   ///< of the study or suite
   std::string title;  ///< for people, in lines; empty: nothing to say

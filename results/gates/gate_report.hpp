@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// What the gates say of a run, for people: a line a gate with limit, measured number, interval and
+/// What the gates say about a run, for people: a line a gate with limit, measured number, interval and
 /// margin; then why the gates that did not pass did not, and which verdicts differ from the baseline.
 std::string gates_text(const GateCheck& check);
 

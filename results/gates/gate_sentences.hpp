@@ -9,9 +9,9 @@ namespace mpm {
 
 // A judged gate in words, the same for people and for JUnit.
 
-/// What is claimed: ">= 90.0 %", "0.2 to 0.4".
+/// The claim: ">= 90.0 %", "0.2 to 0.4".
 std::string limit_text(const GateResult& result);
-/// What was measured: "97.2 %"; "-" when nothing was.
+/// The measured number: "97.2 %"; "-" without one.
 std::string measured_text(const GateResult& result);
 /// Its interval: "90.3 to 99.2 %"; "-" if there is none.
 std::string interval_text(const GateResult& result);

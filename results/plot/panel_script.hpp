@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// A point that says what it is when a mouse rests on it, and on a page leads to where more is said of it.
+/// A point that says what it is when a mouse rests on it, and on a page leads to where more is said about it.
 struct NamedPoint {
   double x, y;
   std::string name;
@@ -34,12 +34,12 @@ class PanelScript {
   /// `name` is unique within a figure: letters, digits and underscores, a letter first.
   PanelScript(std::string name, std::string title, Axis x, Axis y);
 
-  /// Of a curve with more than kMostOnCurve points, as of three weeks of minutes, those are drawn that make
-  /// what a screen shows: the extremes of each stretch.
+  /// For a curve with more than kMostOnCurve points, such as three weeks of minutes, only those are drawn
+  /// that make what a screen shows: the extremes of each stretch.
   void line(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
   /// A line that keeps the value y[k] from x[k] to x[k + 1].
   void steps(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
-  /// Of more than kMostPoints points every n-th is drawn, so that a page of a large study stays readable.
+  /// With more than kMostPoints points, every n-th is drawn, so that a page of a large study stays readable.
   void points(const std::vector<NamedPoint>& points, const Pen& pen);
   /// Values at x = at with upright intervals.
   void upright_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) { draw(whiskers, pen, false); }

@@ -5,7 +5,7 @@
 
 namespace mpm {
 
-/// What an SVG of gnuplot lacks.
+/// Adds what an SVG of gnuplot lacks.
 struct SvgText {
   std::string id;                            ///< before every id, so that many drawings fit into one page
   std::string description;                   ///< for people who do not see it

@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// What can be guessed of a study from a file of records.
+/// What can be guessed about a study from a file of records.
 struct DataSketch {
   std::string file;   ///< its name
   std::string table;  ///< [data] as the text of a study file, each guess with a comment that calls it one

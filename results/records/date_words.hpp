@@ -17,7 +17,7 @@ namespace mpm {
 /// `language` is a name such as "it" or "pt_BR"; empty: the one in which `reads` reads the most cells. Where
 /// languages differ on what a cell says, that of four times as many regions as all others together is taken.
 /// None where English reads all of them, and where no language reads one. Errors: InputError at `place` for a
-/// language that CLDR has not, and where languages differ and nothing decides.
+/// language that CLDR does not have, and where languages differ and nothing decides.
 std::optional<std::vector<std::string>> dates_in_english(
     const std::vector<std::string>& cells, const std::string& language, const std::string& place,
     const std::function<bool(const std::string&)>& reads);

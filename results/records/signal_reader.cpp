@@ -33,7 +33,7 @@ std::string cut_name(const std::string& text) {
   return std::string(cut_utf8(text, kShownBytes));
 }
 
-/// What the names of a DataOptions group say of a variable; none: nothing.
+/// What the names of a DataOptions group say about a variable; none: nothing.
 template <class Value>
 std::optional<Value> said_of(const std::map<std::string, Value>& group, const std::string& variable) {
   const auto found = group.find(variable);

@@ -41,7 +41,7 @@ struct StampedRows {
 /// What a tag has twice at one time gets a row of its own. Rows without a stamp are left out.
 ///
 /// Errors: InputError that names the file, the line or column and the key: those of parse_time_stamps(),
-/// stamps that go back, local times with a change of the clock, a layout that the file has not.
+/// stamps that go back, local times with a change of the clock, a layout that the file does not have.
 StampedRows stamped_rows(const RowsWanted& wanted, RecordColumns file);
 
 }  // namespace mpm

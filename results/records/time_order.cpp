@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kHourOfClock = 3600.0;  // s
 
-/// Two neighbours among the rows that are kept, and what is said of them.
+/// Two neighbours among the rows that are kept, and what is said about them.
 class StampSteps {
  public:
   StampSteps(const StampSource& source, const TimeStamps& stamps, const std::vector<std::size_t>& rows)

@@ -13,7 +13,7 @@ std::optional<double> offset_of_letters(const std::string& letters);
 /// The clocks of a time zone, with all their changes, from the time zone database of the system.
 class ZoneClock {
  public:
-  /// By its IANA name, "Europe/Berlin". Errors: InputError at `place` for one that there is not.
+  /// By its IANA name, "Europe/Berlin". Errors: InputError at `place` for an unknown name.
   ZoneClock(const std::string& name, const std::string& place);
   ~ZoneClock();
   ZoneClock(ZoneClock&&) noexcept;

@@ -21,7 +21,7 @@ struct BoardColumn {
   std::string_view unless = {};  ///< there is the column of this name
 };
 
-/// Those of which the board has numbers.
+/// Those for which the board has numbers.
 std::vector<BoardColumn> board_columns(const Leaderboard& board);
 
 /// The value of a method, with its interval and the number of loops; NaN where there is none.

@@ -268,7 +268,7 @@ Estimate delay_in(const JsonEntry& entry, const Study& study, std::size_t loops)
   return delay;
 }
 
-/// What a method of this scope said of the loops of a cell.
+/// What a method of this scope said about the loops of a cell.
 LoopOutcomes outcomes_in(const JsonEntry& entry, const CellScores& cell, const OutcomeScope& scope) {
   const std::size_t loops = cell.truths.size(), count = outcome_text_count();
   std::vector<std::string> texts{letters_in(entry.at(outcome_key(0)), loops)};

@@ -35,7 +35,7 @@ BoardHeading board_heading(const std::filesystem::path& path);
 /// four digits.
 std::string board_text(const Suite& suite, const Leaderboard& board, const std::string& revision);
 
-/// Reads such a file, which somebody else may have written, and holds it against the suite: its name, version
+/// Reads such a file, which somebody else may have written, and compares it with the suite: its name, version
 /// and seed, and of each cell the study. Cells of plants and families that `suite` leaves out are skipped,
 /// and cells that the file lacks are not there. Errors: InputError "FILE: KEY: ..." with what was found and
 /// what is allowed; that of foreign_content().

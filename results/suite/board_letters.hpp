@@ -23,8 +23,8 @@ std::optional<FaultTruth> fault_truth(char letter);
 /// What a method said, in as many texts as its facts need: outcome_facts() from the lowest bit of the first
 /// letter on, none of them in two letters.
 std::vector<std::string> outcome_letters(const LoopOutcomes& outcomes);
-/// Of one loop, from its letter in each text; texts that are missing have no bit set. None for characters
-/// that no outcome has.
+/// The facts of one loop, from its letter in each text; texts that are missing have no bit set. None for
+/// characters that no outcome has.
 std::optional<LoopOutcome> loop_outcome(const std::string& letters);
 /// How many texts there are.
 std::size_t outcome_text_count();

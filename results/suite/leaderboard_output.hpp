@@ -25,7 +25,7 @@ std::string leaderboard_json(const Leaderboard& board);
 /// The columns of the table as dots with whiskers, a row a method.
 Figure leaderboard_figure(const Leaderboard& board);
 
-/// What a method is called where people read it: "reference" for kReferenceMethod.
+/// The name of a method as people read it: "reference" for kReferenceMethod.
 std::string label_of(const std::string& method);
 /// The same as words for the head of a row; one's own methods are marked.
 std::string row_name(const Leaderboard& board, std::size_t method);
@@ -65,7 +65,7 @@ const char* part_mark(const PooledScores& scores);
 std::vector<std::string_view> information_rates();
 
 /// Effect of the correction by the benchmark to each method that the board has with and without it, and
-/// what the choice of the method brings; no content without such a method.
+/// the gain by the choice of the method; no content without such a method.
 Section information_section(const Leaderboard& board);
 
 }  // namespace mpm

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// What one study of a sweep gave.
+/// The results of one study of a sweep.
 struct SweepRow {
   std::string choice;  ///< empty for the base study
   std::string value;

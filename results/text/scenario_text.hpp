@@ -21,7 +21,7 @@ std::string flagged_text(const Study& study, const AssessmentRecord& chain);
 /// the experiment ended when there is no verdict.
 std::string scenario_verdict_text(const Study& study, const ExperimentRecord& record);
 
-/// What the autocorrelation functions say of a CV: "alike"; "slower than designed, oscillates; own model".
+/// What the autocorrelation functions say about a CV: "alike"; "slower than designed, oscillates; own model".
 std::string acf_text(const AcfComparison& acf);
 
 /// Does the loop differ from its nominal output, in speed or in oscillation?

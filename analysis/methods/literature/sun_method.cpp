@@ -156,7 +156,7 @@ class Sun final : public AssessmentMethod {
   }
 
  private:
-  /// A CV that is held in a range has no setpoint that its moves could follow: nothing is said of it.
+  /// A CV that is held in a range has no setpoint that its moves could follow: nothing is said about it.
   void add_cv(Eigen::Index cv, bool has_setpoint, const ModelQuality& quality, Assessment& assessment) const {
     const double imqi = quality.imqi(cv);
     const double index = sun_.index == SunIndex::imqi ? imqi : imqi * imqi;

@@ -23,7 +23,7 @@ struct ChannelError {
   double deviation;  ///< of the factor about 1, or of the shift of the dead time about 0
 };
 
-/// What may be wrong with the model of a CV in a plant that has no fault.
+/// The possible errors of the model of a CV in a plant that has no fault.
 struct ModelErrorPrior {
   std::vector<ChannelError> channels;
   double bias = 0.0;  ///< standard deviation of a constant, in those of the noise
@@ -49,7 +49,7 @@ Eigen::MatrixXd model_inputs(const AssessedLoop& loop);
 /// in closed loop, too, because S of a sample is made of inputs before it. W are errors of the gains that
 /// wander along the record, as those of a nonlinear plant do: the response of each channel times a polygon in
 /// time with free corners. The benchmark gives the sizes of n and eta by their marginal likelihood, and delta
-/// a mean, with which the model is corrected, and a covariance. eta is another one in each record.
+/// a mean, with which the model is corrected, and a covariance. eta differs from record to record.
 class ModelErrors {
  public:
   /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample, `inputs` (nu + nd x N)
@@ -81,7 +81,7 @@ class ModelErrors {
   /// The model with errors out of their posterior, of `z` ~ N(0, I) of the size count().
   TransferMatrix drawn(const Eigen::Ref<const Eigen::VectorXd>& z) const;
 
-  /// What the correction makes of the simulation error of a record, N.
+  /// The corrected simulation error of a record, N.
   Eigen::RowVectorXd correction(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                 const Eigen::Ref<const Eigen::VectorXd>& initial) const;
   /// D S of a record and below it wander W, in CV units.

@@ -13,7 +13,7 @@
 #include "scenarios/study/study.hpp"
 #include "solvers/qp_solver.hpp"
 
-// What the repair of each channel would bring, from the record alone.
+// The expected gain of the repair of each channel, from the record alone.
 
 namespace mpm {
 
@@ -37,7 +37,7 @@ struct RepairedChannel {
   TransferFunction model;  ///< without washout
 };
 
-/// What one repair brings on the plants that the record leaves possible.
+/// The gain of one repair on the plants that the record leaves possible.
 struct RepairProspect {
   RepairedChannel repair;
   std::vector<double> gains;  ///< ascending, of the plants on which all loops run to their end; may be empty
@@ -49,7 +49,7 @@ struct RepairProspect {
   double gain() const;
   /// Share of the plants on which the gain is larger; NaN without a plant.
   double probability_above(double worth) const;
-  /// Whether it is expected to bring something, and to worsen no CV noticeably.
+  /// Whether it is expected to gain something, and to worsen no CV noticeably.
   bool is_proposed() const;
 };
 

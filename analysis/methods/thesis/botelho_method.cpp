@@ -66,7 +66,7 @@ class Botelho final : public AssessmentMethod {
                                  : flagged ? chain.source_of(chain.indicator_of(cv, y, nominal))
                                            : FaultSource::none;
       const double away = distance(diagnosis.ivar_diag(cv));
-      // Nothing is said of a CV that stands still.
+      // Nothing is said about a CV that stands still.
       assessment.cvs.push_back({std::isnan(away) ? std::nullopt : std::optional(flagged), away, source});
     }
     assessment.numbers = chain_numbers(diagnosis);
