@@ -14,7 +14,8 @@
 namespace mpm {
 namespace {
 
-constexpr std::array<std::string_view, 5> kQualityWords{"quality", "status", "qual", "q", "qc"};
+constexpr std::array<std::string_view, 12> kQualityWords{
+    "quality", "status", "qual", "q", "qc", "valid", "validity", "good", "ok", "sts", "health", "flag"};
 constexpr std::array<std::string_view, 5> kValueWords{"pv", "value", "val", "sp", "op"};
 constexpr std::string_view kBetween = "._ -/:";
 constexpr std::array<std::string_view, 3> kTagEndings{"pv", "sp", "op"};
