@@ -1,6 +1,7 @@
 #include "analysis/records/record_alternatives.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -23,11 +24,56 @@ namespace {
 
 using Columns = Eigen::MatrixXd;
 
+/// A_l' B_m of signals (n x .) that are l and m samples late, l, m <= kNoiseOrder, over the samples that have
+/// a past of this length. The products of signals that an autoregression whitens follow from them without the
+/// signals:
+///
+///   (A_0 - sum_l a_l A_l)' (B_0 - sum_m a_m B_m)
+class LaggedProducts {
+ public:
+  LaggedProducts(const Columns& A, const Columns& B) {
+    const Eigen::Index n = A.rows(), count = n - kNoiseOrder;
+    const auto late = [count](const Columns& signals, Eigen::Index lag) {
+      return signals.middleRows(kNoiseOrder - lag, count);
+    };
+    for (Eigen::Index m = 0; m < kLags; ++m)
+      at(0, m) = late(A, 0).transpose() * late(B, m);
+    for (Eigen::Index l = 1; l < kLags; ++l)
+      at(l, 0) = &A == &B ? Columns(at(0, l).transpose()) : Columns(late(A, l).transpose() * late(B, 0));
+    // One sample later a sample enters at the start, and one leaves at the end.
+    for (Eigen::Index l = 0; l + 1 < kLags; ++l)
+      for (Eigen::Index m = 0; m + 1 < kLags; ++m)
+        at(l + 1, m + 1) = at(l, m) + A.row(kNoiseOrder - 1 - l).transpose() * B.row(kNoiseOrder - 1 - m) -
+                           A.row(n - 1 - l).transpose() * B.row(n - 1 - m);
+  }
+
+  Columns whitened_by(const Eigen::VectorXd& a) const {
+    Eigen::VectorXd factors(kLags);
+    factors << 1.0, -a;
+    Columns sum = Columns::Zero(products_.front().rows(), products_.front().cols());
+    for (Eigen::Index l = 0; l < kLags; ++l)
+      for (Eigen::Index m = 0; m < kLags; ++m)
+        if (const double factor = factors(l) * factors(m); factor != 0.0)
+          sum += factor * at(l, m);
+    return sum;
+  }
+
+ private:
+  static constexpr Eigen::Index kLags = kNoiseOrder + 1;
+
+  Columns& at(Eigen::Index l, Eigen::Index m) { return products_[static_cast<std::size_t>(l * kLags + m)]; }
+  const Columns& at(Eigen::Index l, Eigen::Index m) const {
+    return products_[static_cast<std::size_t>(l * kLags + m)];
+  }
+
+  std::array<Columns, static_cast<std::size_t>(kLags* kLags)> products_;
+};
+
 /// One CV: its errors, and how likely they are under a hypothesis.
 class CvErrors {
  public:
   CvErrors(const AssessedLoop& loop, const ChannelErrorFit& fit, Eigen::Index cv)
-      : samples_(fit.samples), X_(fit.X) {
+      : samples_(fit.samples), X_(fit.X.size() == 0 ? Columns(fit.e.size(), 0) : fit.X), XX_(X_, X_) {
     if (!loop.untold.empty()) {
       const Columns untold = loop.untold[static_cast<std::size_t>(cv)](Eigen::all, samples_).transpose();
       const Eigen::HouseholderQR<Columns> qr(untold);
@@ -80,31 +126,33 @@ class CvErrors {
   double log_likelihood(const Eigen::VectorXd& e, const Columns& free,
                         Eigen::VectorXd* innovations = nullptr) const {
     const auto n = static_cast<double>(e.size());
-    Columns Z(e.size(), X_.cols() + free.cols());
-    Z << X_, free;
-    Eigen::VectorXd a = Eigen::VectorXd::Zero(kNoiseOrder);
-    Eigen::VectorXd of_errors;
-    double variance = std::max(1e-300, e.squaredNorm() / n), squares = 0.0;
+    const Eigen::Index p = X_.cols(), q = free.cols();
+    const LaggedProducts Xe(X_, e), FX(free, X_), FF(free, free), Fe(free, e);
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(kNoiseOrder), of_errors, w;
+    double variance = std::max(1e-300, e.squaredNorm() / n);
     for (int pass = 0; pass < kPasses; ++pass) {
-      const Columns white = whitened_by(a, Z);
-      const Eigen::VectorXd white_e = whitened_by(a, e);
-      Columns A = white.transpose() * white / variance;
-      A.diagonal().head(X_.cols()).array() += 1.0;
+      Columns A(p + q, p + q);
+      A << XX_.whitened_by(a), FX.whitened_by(a).transpose(), FX.whitened_by(a), FF.whitened_by(a);
+      Eigen::VectorXd right(p + q);
+      right << Xe.whitened_by(a), Fe.whitened_by(a);
+      A /= variance;
+      A.diagonal().head(p).array() += 1.0;
       A.diagonal().array() += 1e-12;
-      of_errors = A.ldlt().solve(white.transpose() * white_e / variance);
-      const Eigen::VectorXd w = white_e - white * of_errors;
-      squares = w.squaredNorm();
-      if (innovations != nullptr)
-        *innovations = w;
-      variance = std::max(1e-300, squares / static_cast<double>(white_e.size()));
+      of_errors = A.ldlt().solve(right / variance);
+      const Eigen::VectorXd left = e - X_ * of_errors.head(p) - free * of_errors.tail(q);
+      w = mpm::whitened_by(a, left);
+      variance = std::max(1e-300, w.squaredNorm() / static_cast<double>(w.size()));
       if (pass + 1 < kPasses)
-        a = autoregression_of(e - Z * of_errors);
+        a = autoregression_of(left);
     }
-    return -0.5 * n * std::log(variance) - 0.5 * of_errors.head(X_.cols()).squaredNorm();
+    if (innovations != nullptr)
+      *innovations = w;
+    return -0.5 * n * std::log(variance) - 0.5 * of_errors.head(p).squaredNorm();
   }
 
   std::vector<Eigen::Index> samples_;
   Columns X_, Q_;
+  LaggedProducts XX_;
   Eigen::VectorXd e_;
   double none_ = 0.0;
 };
@@ -187,27 +235,47 @@ class Comparison {
     return found;
   }
 
-  double common_lateness() const {
-    constexpr double kSure = 6.0;
-    double best = 0.0, most = -kInfinity, samples = 0.0;
-    const auto with_free_gains = [&](double late) {
-      double sum = 0.0;
-      for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
-        const Eigen::RowVectorXd y_sim = loop_.y_sim.row(cv);
-        const Columns gains = responses(cv, late);
-        sum += of(cv).without(late_by(y_sim, late) - y_sim, gains) -
-               0.5 * static_cast<double>(gains.cols()) * of(cv).log_samples();
-        samples = std::max(samples, of(cv).log_samples());
-      }
-      return sum;
+  LateCvs common_lateness() const {
+    constexpr double kSure = 6.0, kTells = 2.0;
+    constexpr double kLate[] = {-2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0};
+    const auto with_free_gains = [&](Eigen::Index cv, double late) {
+      const Eigen::RowVectorXd y_sim = loop_.y_sim.row(cv);
+      const Columns gains = responses(cv, late);
+      return of(cv).without(late_by(y_sim, late) - y_sim, gains) -
+             0.5 * static_cast<double>(gains.cols()) * of(cv).log_samples();
     };
-    for (const double late : {-2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0})
-      if (const double here = with_free_gains(late); here > most) {
-        most = here;
-        best = late;
+    const Eigen::Index ny = loop_.y.rows();
+    Eigen::VectorXd none(ny), wrong(ny);
+    double samples = 0.0;
+    for (Eigen::Index cv = 0; cv < ny; ++cv) {
+      none(cv) = with_free_gains(cv, 0.0);
+      wrong(cv) = mismatch(cv);
+      samples = std::max(samples, of(cv).log_samples());
+    }
+    LateCvs best;
+    double most = 0.0;
+    for (const double late : kLate) {
+      LateCvs here{.samples = late};
+      double sum = -0.5 * samples, than_wrong = sum;
+      bool all = true;
+      for (Eigen::Index cv = 0; cv < ny; ++cv) {
+        const double with = with_free_gains(cv, late);
+        all = all && with > none(cv) - kTells;
+        if (with < none(cv) + kTells)
+          continue;
+        here.cvs.push_back(cv);
+        sum += with - none(cv);
+        than_wrong += with - wrong(cv);
       }
-    const double found = most - 0.5 * samples;
-    return found > with_free_gains(0.0) + kSure && found > mismatch() ? best : 0.0;
+      const bool is_surer = than_wrong > (here.cvs.size() == 1 && ny > 1 ? kSure : 0.0);
+      if (all)
+        here.cvs.clear();
+      if (sum > kSure && is_surer && sum > most) {
+        most = sum;
+        best = here;
+      }
+    }
+    return best;
   }
 
  private:
@@ -242,15 +310,19 @@ class Comparison {
     return place < study_.mv_count() ? loop_.u.row(place) : loop_.d.row(place - study_.mv_count());
   }
 
-  /// The best single parameter of a channel of each CV.
+  /// The best single parameter of a channel of a CV.
+  double mismatch(Eigen::Index cv) const {
+    double best = of(cv).none();
+    for (Eigen::Index place = 0; place < study_.mv_count() + study_.md_count(); ++place)
+      best = std::max(best, of_channel(cv, place));
+    return best;
+  }
+
+  /// That of each CV.
   double mismatch() const {
     double sum = 0.0;
-    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
-      double best = of(cv).none();
-      for (Eigen::Index place = 0; place < study_.mv_count() + study_.md_count(); ++place)
-        best = std::max(best, of_channel(cv, place));
-      sum += best;
-    }
+    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv)
+      sum += mismatch(cv);
     return sum;
   }
 
@@ -409,7 +481,7 @@ double input_dependence(const Study& study, const AssessedLoop& loop, const Chan
                   moves_of(study, loop, cv));
 }
 
-double common_lateness(const Study& study, const AssessedLoop& loop, double delta) {
+LateCvs common_lateness(const Study& study, const AssessedLoop& loop, double delta) {
   return Comparison(study, loop, delta, {}).common_lateness();
 }
 

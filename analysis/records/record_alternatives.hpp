@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -49,9 +51,22 @@ double input_dependence(const Study& study, const AssessedLoop& loop, const Chan
 /// y at s samples before, a straight line between samples; the first and the last value beyond the ends.
 Eigen::RowVectorXd late_by(const Eigen::RowVectorXd& y, double s);
 
-/// By how many samples all CVs are late against the inputs (below 0: early), in halves of a sample; 0: not at
-/// all, as far as anyone can tell. With s all of them are explained better than without, by 6 in L, where
-/// the gain of each channel is free in both, and not worse than by a mismatch in one channel of each CV.
-double common_lateness(const Study& study, const AssessedLoop& loop, double delta);
+/// CVs whose rows are of another time than those of the inputs.
+struct LateCvs {
+  double samples = 0.0;                ///< below 0: early; 0: none is late
+  std::vector<Eigen::Index> cvs = {};  ///< empty: all
+
+  bool any() const { return samples != 0.0; }
+  bool has(Eigen::Index cv) const {
+    return any() && (cvs.empty() || std::find(cvs.begin(), cvs.end(), cv) != cvs.end());
+  }
+};
+
+/// The CVs that are late against the inputs (below 0: early), all by the same half or whole samples; none, as
+/// far as anyone can tell. Those are late that s explains better than no shift, and all are unless s explains
+/// some worse, by 2 in L. Together s explains them better than none does, by 6 in L, where the gain of each
+/// channel is free in both, and not worse than a mismatch in one channel of each CV; of one CV alone better
+/// by 6 than that.
+LateCvs common_lateness(const Study& study, const AssessedLoop& loop, double delta);
 
 }  // namespace mpm

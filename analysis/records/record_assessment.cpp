@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -35,6 +41,9 @@
 
 namespace mpm {
 namespace {
+
+/// Says how probable the usual sources are.
+constexpr const char* kOdds = "likelihood";
 
 /// y0: the controller on its own model under the recorded disturbances, without noise; what is not reached is
 /// zero.
@@ -123,6 +132,32 @@ NamedMismatch mismatch_of(const ChannelRepair& repair) {
              : NamedMismatch{repair.channel, parameter, size->value, size->lower, size->upper, size->bound};
 }
 
+/// The record as these methods see it.
+JudgedRecord judged_by(const RecordFrame& frame, std::vector<std::string> methods,
+                       const PlantRecord& record) {
+  RecordFrame asked = frame;
+  asked.methods = std::move(methods);
+  return RecordPanel(asked).judge(record);
+}
+
+/// Is nothing left but the usual background, once the channel of the repair is as it is? Of a fault that
+/// begins within the record its later half counts, in which it has grown.
+bool is_mismatch_alone(const RecordAssessment& assessment, const RecordFrame& frame) {
+  if (!assessment.repair || frame.model_error == 0.0 ||
+      assessment.record.benchmark.first < assessment.record.benchmark.second ||
+      !assessment.record.y_sim.array().isNaN().all())
+    return false;
+  RecordFrame repaired = frame;
+  const ChannelRepair& repair = assessment.repair->repair;
+  for (Study* const of : {&repaired.as_kept, &repaired.closed})
+    of->plant.G(repair.channel.cv, repair.channel.mv) = repair.model;
+  PlantRecord record = assessment.record;
+  if (const std::optional<FaultOnset>& since = assessment.verdict.model.since)
+    record.y.leftCols((since->sample + record.samples()) / 2).setConstant(kNaN);
+  const AssessmentRecord said = judged_by(repaired, {kModelCheck}, record).said.front();
+  return said.answered() && said.score <= assessment.model_threshold();
+}
+
 /// Puts what the corrected channel promises into the assessment, when the verdict is about the model, and
 /// what the repair of each channel would bring.
 void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictEvidence& evidence) {
@@ -199,42 +234,107 @@ TrialFrame trial_frame(const RecordAssessment& assessment, const RecordFrame& fr
   return made;
 }
 
-/// Has the loops like the record run, and puts what they say into the assessment.
-void add_trial(RecordAssessment& assessment, const Study& study,
-               const std::shared_ptr<const RecordFrame>& frame, int trials, const TrialRunner& run_trials) {
+/// Does any method name this one?
+bool is_named_by_methods(RecordSource source) {
+  return source == RecordSource::mismatch || source == RecordSource::disturbance ||
+         source == RecordSource::both || source == RecordSource::valve;
+}
+
+/// How often simulated records of which the same source was said have it.
+using CountsOfSource = std::function<TrialCounts(RecordSource)>;
+
+/// The methods that every simulated record is asked for. The first one, where it tells sources, costs more
+/// than all else, and only its sources count, where the model does not explain the record.
+std::vector<std::string> asked_of_all(const RecordFrame& frame) {
+  std::vector<std::string> names = frame.methods;
+  if (method_table(frame.as_kept.assessment).method(names.front()).tells_sources)
+    names.erase(names.begin());
+  return names;
+}
+
+/// Asks the first method of the frame of the loops `unexplained` only, and the others of all.
+LoopAssessor source_assessor(const RecordFrame& frame, const std::shared_ptr<const TrialFrame>& made,
+                             const std::vector<std::string>& methods,
+                             std::shared_ptr<const std::set<std::int64_t>> unexplained) {
+  const auto assessor_of = [&](const std::vector<std::string>& names) {
+    const auto asked = std::make_shared<RecordFrame>(frame);
+    asked->methods = names;
+    return trial_assessor(asked, made);
+  };
+  if (methods.front() != frame.methods.front())
+    return assessor_of(methods);
+  const std::vector<std::string> others(methods.begin() + 1, methods.end());
+  AssessmentRecord unasked = unassessed(assessment_forms(made->study, {methods.front()})).front();
+  unasked.status = AssessmentStatus::not_applicable;
+  unasked.reason = "the model explains the record";
+  return [all = assessor_of(methods), rest = others.empty() ? LoopAssessor{} : assessor_of(others),
+          unasked = std::move(unasked),
+          unexplained = std::move(unexplained)](const ExperimentRecord& experiment) {
+    if (unexplained->contains(experiment.draw.index))
+      return all(experiment);
+    std::vector<AssessmentRecord> said = rest ? rest(experiment) : std::vector<AssessmentRecord>{};
+    said.insert(said.begin(), unasked);
+    return said;
+  };
+}
+
+/// Has the loops like the record run, and puts what they say into the assessment. What is returned asks the
+/// first method for its sources; empty without such loops.
+CountsOfSource add_trial(RecordAssessment& assessment, const Study& study,
+                         const std::shared_ptr<const RecordFrame>& frame, int trials,
+                         const TrialRunner& run_trials) {
   if (trials == 0) {
     assessment.no_trial = "no calibration run was asked for (--trials)";
-    return;
+    return {};
   }
   try {
     const auto made = std::make_shared<TrialFrame>(trial_frame(assessment, *frame, study, trials));
     const auto alike = std::make_shared<RecordFrame>(*frame);
     alike->as_kept.monitoring.reset();
     alike->closed.monitoring.reset();
-    alike->late = 0.0;
+    alike->late = {};
     alike->habit.reset();
-    const TrialLoops loops = run_trials({made->study, [alike, made](const std::vector<std::string>& methods) {
-                                           const auto asked = std::make_shared<RecordFrame>(*alike);
-                                           asked->methods = methods;
-                                           return trial_assessor(asked, made);
-                                         }});
-    const std::size_t last = assessment.said.size();
+    const auto run = [alike, made, run_trials](const std::vector<std::string>& methods,
+                                               const std::shared_ptr<const std::set<std::int64_t>>& asked) {
+      Study with_methods = made->study;
+      with_methods.methods = methods;
+      return run_trials({std::move(with_methods), [=](const std::vector<std::string>& names) {
+                           return source_assessor(*alike, made, names, asked);
+                         }});
+    };
+    const std::vector<std::string> always = asked_of_all(*frame);
+    const TrialLoops loops = run(always, {});
+    const std::size_t last = always.size() - 1;
     RecordTrial trial{loops.archive,
                       static_cast<std::int64_t>(loops.records.size()),
                       {},
                       trial_findings(made->study, last, loops.records, assessment.model)};
-    for (std::size_t method = 0; method < last; ++method)
-      trial.methods.push_back(trial_findings(made->study, method, loops.records, assessment.said[method]));
+    const std::size_t unasked = assessment.said.size() - last;  // 1, or 0
+    for (std::size_t method = 0; method < assessment.said.size(); ++method)
+      trial.methods.push_back(method < unasked
+                                  ? std::nullopt
+                                  : std::optional(trial_findings(made->study, method - unasked, loops.records,
+                                                                 assessment.said[method])));
     const Eigen::Index ny = assessment.study.cv_count();
     trial.cost = number_thresholds(loops.records, last, kCostNumber, ny);
     trial.cost_since = number_thresholds(loops.records, last, kCostSinceNumber, ny);
     trial.fit = fit_threshold(loops.records, last);
     trial.health = number_thresholds(loops.records, last, "health", 1)(0);
-    trial.counts_of = [records = loops.records, keeps = loops.keeps, last, model = trial.model](
-                          RecordSource named) { return trial_counts(records, last, model, 0, named); };
+    trial.counts = trial_counts(loops.records, last, trial.model);
     assessment.trial = std::move(trial);
+    return [loops, run, last, unasked, methods = frame->methods,
+            model = assessment.trial->model](RecordSource named) {
+      if (!is_named_by_methods(named))
+        return trial_counts(loops.records, last, model);
+      const auto asked = std::make_shared<std::set<std::int64_t>>();
+      for (const std::int64_t index : unexplained_records(loops.records, last, model))
+        asked->insert(index);
+      const TrialLoops of_sources = unasked == 0 ? loops : run(methods, asked);
+      return trial_counts(of_sources.records, last + unasked, model, named);
+    };
   } catch (const InputError& error) {
     assessment.no_trial = fmt::format("no loop like this one can be simulated: {}", error.what());
+    return {};
   }
 }
 
@@ -248,6 +348,28 @@ void tell_benchmark(const RecordFrame& frame, RecordAssessment& assessment) {
       "the benchmark is the period of the record in which the model is best, {} to {}: look whether the loop "
       "ran well then (data.benchmark)",
       record.stamps[static_cast<std::size_t>(first)], record.stamps[static_cast<std::size_t>(end - 1)]));
+}
+
+/// Names the CVs whose noise is out of proportion: simulated records have that of the study.
+void tell_noise(const RecordFrame& frame, RecordAssessment& assessment) {
+  constexpr double kMuch = 3.0;
+  if (!assessment.model.answered())
+    return;
+  const Eigen::MatrixXd noise = assessment.model.values("noise");
+  for (Eigen::Index cv = 0; cv < noise.rows(); ++cv) {
+    double usual = frame.as_kept.simulation.noise_standard_deviation(cv);
+    if (frame.habit && frame.habit->noise[static_cast<std::size_t>(cv)])
+      usual = std::sqrt(frame.habit->noise[static_cast<std::size_t>(cv)]->differences);
+    const double ratio = std::sqrt(noise(cv, 0)) / usual;
+    const bool is_said = std::any_of(assessment.unexplained.begin(), assessment.unexplained.end(),
+                                     [cv](const UnexplainedCv& each) { return each.cv == cv; });
+    if (!is_said && std::isfinite(ratio) && (ratio > kMuch || ratio * kMuch < 1.0))
+      assessment.warnings.push_back(fmt::format(
+          "the noise of {} has {:.2g} times the standard deviation that the study states, and the simulated "
+          "records have that of the study: look at the sensor, at what the historian stores, and at "
+          "simulation.noise_standard_deviation",
+          frame.as_kept.plant.cvs[static_cast<std::size_t>(cv)].name, ratio));
+  }
 }
 
 void tell_unjudged(RecordAssessment& assessment) {
@@ -304,9 +426,8 @@ std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study&
 /// disturbances that no plant is without for a fault.
 AssessmentRecord odds_of(const RecordFrame& frame, const RecordAssessment& assessment) {
   RecordFrame alone = frame;
-  alone.methods = {"likelihood"};
   alone.as_kept.monitoring.reset();
-  return RecordPanel(alone).judge(assessment.record).said.front();
+  return judged_by(alone, {kOdds}, assessment.record).said.front();
 }
 
 /// Costs of the record itself from this sample on.
@@ -393,10 +514,11 @@ VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessme
       cost.threshold = (since ? assessment.trial->cost_since : assessment.trial->cost)(cost.cv);
   evidence.controller_is_alike = assessment.controller.is_alike();
   evidence.benchmark = best_benchmark(frame, assessment);
-  evidence.late = frame.late;
-  evidence.late_is_corrected = frame.late != 0.0;
+  evidence.late = frame.late.samples;
+  evidence.late_cvs = frame.late.cvs;
+  evidence.late_is_corrected = frame.late.any();
   if (assessment.trial)
-    evidence.trials = assessment.trial->counts_of(RecordSource::unknown);
+    evidence.trials = assessment.trial->counts;
   return evidence;
 }
 
@@ -419,14 +541,15 @@ void add_stuck_sensor(const AssessedLoop& loop, VerdictEvidence& evidence) {
 
 /// What may be the matter with a record that the model does not explain.
 void add_sources(const RecordFrame& frame, RecordAssessment& assessment, VerdictEvidence& evidence) {
-  assessment.odds = odds_of(frame, assessment);
+  if (!assessment.odds.form)
+    assessment.odds = odds_of(frame, assessment);
   AssessmentRecord first = assessment.said.front();
   first.flagged = assessment.is_flagged(0);  // by simulated records, and not by a band of variances
   evidence.weights = source_weights(assessment.odds, first);
   if (frame.model_error > 0.0) {
     RecordAlternatives alternatives =
         record_alternatives(frame.as_kept, assessment.loop, frame.model_error, evidence.onset);
-    if (frame.late != 0.0)
+    if (frame.late.any())
       alternatives.data = -kInfinity;  // nothing is left of it
     const SourceWeights weights =
         with_alternatives(evidence.weights, alternatives, assessment.trial ? assessment.trial->fit : kNaN);
@@ -434,8 +557,9 @@ void add_sources(const RecordFrame& frame, RecordAssessment& assessment, Verdict
     evidence.drift = weights.drift;
     evidence.valve_mv = alternatives.valve_mv;
     evidence.sensor_cv = alternatives.sensor_cv;
-    if (frame.late == 0.0) {
-      evidence.late_cv = alternatives.data_cv;
+    if (!frame.late.any()) {
+      if (alternatives.data_cv >= 0)
+        evidence.late_cvs = {alternatives.data_cv};
       evidence.late = alternatives.late;
     }
     add_stuck_sensor(assessment.loop, evidence);
@@ -451,20 +575,33 @@ std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Stu
                                          const QpSolverFactory& factory, RecordAssessment& assessment) {
   assessment.warnings = check_record(study, assessment.record);
   const std::shared_ptr<RecordFrame> frame = frame_of(options, study, factory, assessment);
-  JudgedRecord judged = RecordPanel(*frame).judge(assessment.record);
-  if (frame->model_error > 0.0 && judged.said.back().answered() && judged.said.back().score > kFarTooLarge) {
-    frame->late = common_lateness(frame->as_kept, judged.loop, frame->model_error);
-    if (frame->late != 0.0)
-      judged = RecordPanel(*frame).judge(assessment.record);
+  JudgedRecord checked = judged_by(*frame, {kModelCheck}, assessment.record);
+  if (const AssessmentRecord& check = checked.said.front();
+      frame->model_error > 0.0 && check.answered() && check.score > kFarTooLarge) {
+    frame->late = common_lateness(frame->as_kept, checked.loop, frame->model_error);
+    if (frame->late.any())
+      checked = judged_by(*frame, {kModelCheck}, assessment.record);
+  }
+  std::vector<std::string> methods = options.methods;
+  const auto has = [&methods](const char* name) {
+    return std::find(methods.begin(), methods.end(), name) != methods.end();
+  };
+  const bool adds_odds = has("mpmbench") && !has(kOdds);  // it has asked for them, so that they cost nothing
+  if (adds_odds)
+    methods.emplace_back(kOdds);
+  JudgedRecord judged = judged_by(*frame, methods, assessment.record);
+  if (adds_odds) {
+    assessment.odds = std::move(judged.said.back());
+    judged.said.pop_back();
   }
   assessment.record.benchmark = judged.benchmark;
   assessment.loop = std::move(judged.loop);
-  assessment.model = std::move(judged.said.back());
-  judged.said.pop_back();
+  assessment.model = std::move(checked.said.front());
   assessment.said = std::move(judged.said);
   frame->habit = judged.habit;
   assessment.unexplained =
       unexplained_cvs(frame->as_kept, assessment.loop, frame->model_error, frame->habit.get());
+  tell_noise(*frame, assessment);
   tell_benchmark(*frame, assessment);
   for (std::string& warning : column_lags(*frame, assessment.record))
     assessment.warnings.push_back(std::move(warning));
@@ -523,19 +660,21 @@ RecordAssessment assess_record(const Study& study, PlantRecord record, const Ass
   assessment.model_error = options.model_error;
   assessment.record = std::move(record);
   const std::shared_ptr<const RecordFrame> frame = judge(options, checked, factory, assessment);
-  add_trial(assessment, checked, frame, options.trials, run_trials);
+  const CountsOfSource counts_of = add_trial(assessment, checked, frame, options.trials, run_trials);
   VerdictEvidence evidence = evidence_of(*frame, assessment);
   assessment.verdict = record_verdict(evidence);
   if (assessment.verdict.model.answer == ModelAnswer::fails) {
     add_sources(*frame, assessment, evidence);
+    assessment.verdict = record_verdict(evidence);
+    add_repair(assessment, *frame, evidence);
+    if (assessment.verdict.model.source == RecordSource::both && is_mismatch_alone(assessment, *frame))
+      std::swap(evidence.weights[RecordSource::both], evidence.weights[RecordSource::mismatch]);
     if (assessment.trial) {
       const RecordVerdict::Model model = record_verdict(evidence).model;
       // No simulated record drifts: how often that is right is not known.
       evidence.trials = assessment.trial->counts =
-          assessment.trial->counts_of(model.drifts ? RecordSource::sensor : model.source);
+          counts_of(model.drifts ? RecordSource::sensor : model.source);
     }
-    assessment.verdict = record_verdict(evidence);
-    add_repair(assessment, *frame, evidence);
     assessment.verdict = record_verdict(evidence);
   }
   return assessment;

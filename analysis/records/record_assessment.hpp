@@ -34,14 +34,15 @@ namespace mpm {
 struct RecordTrial {
   std::string archive;  ///< where it is kept
   std::int64_t loops = 0;
-  std::vector<TrialFindings> methods;  ///< in the order of the answers
-  TrialFindings model;                 ///< of RecordAssessment::model
+  /// In the order of the answers; none of a first method that tells sources: it is asked only of the records
+  /// that the model does not explain.
+  std::vector<std::optional<TrialFindings>> methods;
+  TrialFindings model;  ///< of RecordAssessment::model
   Eigen::VectorXd cost = {},
                   cost_since = {};  ///< thresholds of the costs of the CVs, ny (number_thresholds())
   double fit = kNaN;                ///< fit_threshold()
   double health = kNaN;             ///< that of the score of a channel in a period
   TrialCounts counts = {};          ///< of the source that the verdict names
-  std::function<TrialCounts(RecordSource)> counts_of = {};
 };
 
 /// What the methods say of a record of a plant, and what a person needs to judge it.
@@ -72,9 +73,9 @@ struct RecordAssessment {
   std::vector<std::string> warnings;
   RecordVerdict verdict;  ///< what all of this comes to
 
-  /// What the method in this place made of the simulated records; null without any.
+  /// What the method in this place made of the simulated records; null where nobody asked it.
   const TrialFindings* trial_of(std::size_t method) const {
-    return trial ? &trial->methods[method] : nullptr;
+    return trial && trial->methods[method] ? &*trial->methods[method] : nullptr;
   }
   /// Is its score above that of simulated records without a fault? Without those, does it flag the record?
   bool is_flagged(std::size_t method) const;

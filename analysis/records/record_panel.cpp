@@ -134,8 +134,9 @@ std::vector<bool> unknown_samples(const PlantRecord& record) {
 AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record) {
   const Study& study = frame.as_kept;
   AssessedLoop loop = assessed_loop(study, frame.basis.point, record, frame.unjudged);
-  for (Eigen::Index cv = 0; frame.late != 0.0 && cv < loop.y_sim.rows(); ++cv)
-    loop.y_sim.row(cv) = late_by(loop.y_sim.row(cv), frame.late);
+  for (Eigen::Index cv = 0; cv < loop.y_sim.rows(); ++cv)
+    if (frame.late.has(cv))
+      loop.y_sim.row(cv) = late_by(loop.y_sim.row(cv), frame.late.samples);
   const std::vector<bool> unknown = unknown_samples(record);
   leave_out_unknown(frame, unknown, loop.y);
   if (frame.model_error == 0.0)

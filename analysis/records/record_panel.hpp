@@ -12,6 +12,7 @@
 #include "analysis/methods/assessment_record.hpp"
 #include "analysis/methods/method_panel.hpp"
 #include "analysis/records/channel_error_fit.hpp"
+#include "analysis/records/record_alternatives.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
 
@@ -36,7 +37,7 @@ struct RecordFrame {
   double model_error = 0.0;      ///< errors that the model may have, a standard deviation; 0: it is exact
   bool finds_benchmark = false;  ///< data.benchmark = "found"
   Eigen::MatrixXd y0 = {};       ///< ny x N, the nominal loop; empty: no cost is asked for
-  double late = 0.0;             ///< samples by which all CVs of the record are late (common_lateness())
+  LateCvs late = {};             ///< common_lateness() of the record
   Eigen::Index since = 0;        ///< sample from which on costs are asked for besides
   std::shared_ptr<const ModelHabit> habit = {};  ///< JudgedRecord::habit of the record
 

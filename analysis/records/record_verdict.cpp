@@ -103,8 +103,10 @@ RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::ve
   if (evidence.trials && (fails || has_scores))
     model.probabilities = probabilities_of(evidence, fails);
   model.late_is_corrected = evidence.late_is_corrected;
-  if (evidence.late_is_corrected)
+  if (evidence.late_is_corrected) {
     model.late = evidence.late;
+    model.late_cvs = evidence.late_cvs;
+  }
   if (!fails)
     return model;
   model.since = evidence.onset;
@@ -119,7 +121,7 @@ RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::ve
     model.stuck = evidence.stuck;
   if (model.source == RecordSource::data && !evidence.late_is_corrected) {
     model.late = evidence.late;
-    model.late_cv = evidence.late_cv;
+    model.late_cvs = evidence.late_cvs;
   }
   return model;
 }

@@ -149,8 +149,8 @@ struct VerdictEvidence {
   std::optional<Standstill> stuck = {};
   std::optional<NamedMismatch> mismatch = {};  ///< what is wrong with the model
   Eigen::Index valve_mv = -1, sensor_cv = -1;
-  Eigen::Index late_cv = -1;  ///< of data; -1: all CVs
-  double late = 0.0;          ///< samples by which they are late against the inputs, below 0: early
+  std::vector<Eigen::Index> late_cvs = {};  ///< of data; empty: all CVs
+  double late = 0.0;  ///< samples by which they are late against the inputs, below 0: early
   bool late_is_corrected = false;
   std::optional<PromisedGain> promise = {};  ///< of the repair of its channel
   double worth = 0.1;       ///< gain from which on a channel is repaired that costs nothing (AdequacyOptions)
@@ -172,7 +172,7 @@ struct RecordVerdict {
     std::optional<Standstill> stuck = {};  ///< of the source `sensor`: where `sensor_cv` shows one value
     std::optional<NamedMismatch> mismatch = {};   ///< of a source with a mismatch
     Eigen::Index valve_mv = -1, sensor_cv = -1;   ///< of these sources, and of a drift
-    Eigen::Index late_cv = -1;                    ///< of data, or where it is corrected; -1: all CVs
+    std::vector<Eigen::Index> late_cvs = {};      ///< of data, or where it is corrected; empty: all CVs
     double late = 0.0;                            ///< samples, below 0: early; 0: none is
     bool late_is_corrected = false;               ///< the model was held against the record with it
     std::optional<OfSources> probabilities = {};  ///< sum to 1, each inside of 0 and 1; none: not known

@@ -54,6 +54,20 @@ FaultSource source_in(const AssessmentRecord& likelihood, Eigen::Index cv) {
   return best;
 }
 
+/// Calls `see` with each record that has an answer in the place `method`, and whether its score is above its
+/// threshold.
+template <class See>
+void each_beside_threshold(const RecordRange& records, std::size_t method, const TrialFindings& found,
+                           See see) {
+  std::size_t place = 0;  // among those without a fault
+  records.each([&](const ExperimentRecord& record) {
+    if (!has_verdict(record, method))
+      return;
+    const double threshold = is_without_fault(record) ? found.threshold_for(place++) : found.threshold;
+    see(record, record.assessments[method].score > threshold);
+  });
+}
+
 }  // namespace
 
 Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method, const std::string& number,
@@ -74,26 +88,31 @@ Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method
 }
 
 TrialCounts trial_counts(const RecordRange& records, std::size_t method, const TrialFindings& found,
-                         std::size_t source_method, RecordSource named) {
+                         RecordSource named) {
   TrialCounts counts;
-  std::size_t place = 0;  // among those without a fault
-  records.each([&](const ExperimentRecord& record) {
-    if (!has_verdict(record, method))
-      return;
+  each_beside_threshold(records, method, found, [&](const ExperimentRecord& record, bool is_above) {
     const std::int64_t healthy = is_without_fault(record) ? 1 : 0;
-    const double threshold = healthy == 1 ? found.threshold_for(place++) : found.threshold;
-    const bool is_above = record.assessments[method].score > threshold;
     ++(is_above ? counts.above : counts.below);
     (is_above ? counts.healthy_above : counts.healthy_below) += healthy;
-    if (!is_above || !has_verdict(record, source_method))
+    if (!is_above || named == RecordSource::unknown || !has_verdict(record, 0))
       return;
-    const FaultSource said = record.assessments[source_method].predicted_source;
+    const FaultSource said = record.assessments.front().predicted_source;
     if (said == FaultSource::none || record_source(said) != named)
       return;
     ++counts.same;
     counts.right += record_source(source_of(record.draw.kind)) == named ? 1 : 0;
   });
   return counts;
+}
+
+std::vector<std::int64_t> unexplained_records(const RecordRange& records, std::size_t method,
+                                              const TrialFindings& found) {
+  std::vector<std::int64_t> indices;
+  each_beside_threshold(records, method, found, [&](const ExperimentRecord& record, bool is_above) {
+    if (is_above)
+      indices.push_back(record.draw.index);
+  });
+  return indices;
 }
 
 OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRecord& said) {

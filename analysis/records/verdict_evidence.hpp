@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -22,10 +24,14 @@ Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method
                                   Eigen::Index rows);
 
 /// Simulated records by the side of their threshold (TrialFindings::threshold_for()) on which their answer in
-/// the place `method`, of which `found` is, lies, and how often the answer in the place `source_method` has
-/// the right source where it says what is `named`.
+/// the place `method`, of which `found` is, lies, and how often the first of their answers has the right
+/// source where it says what is `named`; `unknown`: no source is.
 TrialCounts trial_counts(const RecordRange& records, std::size_t method, const TrialFindings& found,
-                         std::size_t source_method, RecordSource named);
+                         RecordSource named = RecordSource::unknown);
+
+/// The experiments of those above it.
+std::vector<std::int64_t> unexplained_records(const RecordRange& records, std::size_t method,
+                                              const TrialFindings& found);
 
 /// The posterior of `likelihood` on the record. Where the method of the verdict flags the record and sees
 /// another source in its worst CV than the most probable one there, this and the most probable one of the

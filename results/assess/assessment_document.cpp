@@ -296,11 +296,12 @@ Section trust_section(const RecordAssessment& of) {
         name, said.answered() ? word(flagged ? 1.0 : 0.0) : Cell(std::string(to_string(said.status))),
         Number{said.score}, flagged ? as_label(cv_name(of.study, said.predicted_cv)) : "-",
         flagged ? as_label(source_words(of.study, said, named_source(said))) : "-"};
+    const TrialFindings* const found = of.trial_of(m);
     if (of.trial)
-      cells.emplace_back(Number{of.trial->methods[m].threshold});
-    if (of.trial)
-      for (const std::string_view rate : kRates)
-        cells.emplace_back(number(of.trial->methods[m].rates[rate], NumberForm::percent));
+      cells.emplace_back(found ? Cell(Number{found->threshold}) : Cell("-"));
+    for (const std::string_view rate : kRates)
+      if (of.trial)
+        cells.emplace_back(found ? Cell(number(found->rates[rate], NumberForm::percent)) : Cell("-"));
     table.row(std::move(cells));
     if (!said.answered())
       reasons.words.push_back(name + ": " + as_label(said.reason));

@@ -66,6 +66,20 @@ Json trust_json(const TrialFindings& found) {
           {"same_source", rate_json(found.same_source)}};
 }
 
+/// The CVs that are late: null for all of them, a name, or several.
+Json late_json(const RecordAssessment& of) {
+  Json names = Json::array();
+  for (const Eigen::Index cv : of.verdict.model.late_cvs)
+    names.push_back(cv_name(of.study, cv));
+  return names.empty() ? Json() : names.size() == 1 ? names.front() : names;
+}
+
+/// Of the simulated records of which the source of the verdict was named.
+Json same_source_json(const RecordAssessment& of) {
+  const TrialCounts& counts = of.trial->counts;
+  return rate_json(rate(counts.right, counts.same, of.study.aggregate.confidence));
+}
+
 Json method_json(const RecordAssessment& of, std::size_t m) {
   const AssessmentRecord& said = of.said[m];
   Json json{{"name", said.form->method().name}, {"status", to_string(said.status)}, {"reason", said.reason}};
@@ -82,7 +96,7 @@ Json method_json(const RecordAssessment& of, std::size_t m) {
   json["mismatch"] = named ? named_json(of.study, *named) : Json();
   json["cvs"] = cvs_json(of, said);
   json["windows"] = windows_json(of, said);
-  json["trust"] = of.trial ? trust_json(of.trial->methods[m]) : Json();
+  json["trust"] = of.trial_of(m) ? trust_json(*of.trial_of(m)) : Json();
   return json;
 }
 
@@ -205,11 +219,10 @@ Json model_json(const RecordAssessment& of) {
                                 : Json()},
           {"mismatch", model.mismatch ? named_json(of.study, *model.mismatch) : Json()},
           {"valve", model.valve_mv < 0 ? Json() : Json(mv_name(of.study, model.valve_mv))},
-          {"late", model.late == 0.0
-                       ? Json()
-                       : Json{{"cv", model.late_cv < 0 ? Json() : Json(cv_name(of.study, model.late_cv))},
-                              {"samples", model.late},
-                              {"corrected", model.late_is_corrected}}},
+          {"late", model.late == 0.0 ? Json()
+                                     : Json{{"cv", late_json(of)},
+                                            {"samples", model.late},
+                                            {"corrected", model.late_is_corrected}}},
           {"error", of.model_error},
           {"score", number_or_null(model.score)},
           {"threshold", number_or_null(model.threshold)},
@@ -246,9 +259,10 @@ std::string assessment_json(const RecordAssessment& assessment) {
   json["controller"] = controller_json(assessment);
   json["repair"] = assessment.repair ? promise_json(assessment) : Json();
   json["candidates"] = prospects_json(assessment.study, assessment.prospects);
-  json["trial"] = assessment.trial
-                      ? Json{{"loops", assessment.trial->loops}, {"archive", assessment.trial->archive}}
-                      : Json{{"loops", 0}, {"why", assessment.no_trial}};
+  json["trial"] = assessment.trial ? Json{{"loops", assessment.trial->loops},
+                                          {"archive", assessment.trial->archive},
+                                          {"same_source", same_source_json(assessment)}}
+                                   : Json{{"loops", 0}, {"why", assessment.no_trial}};
   const auto [first, end] = assessment.record.benchmark;
   json["benchmark"] = first == end
                           ? Json()

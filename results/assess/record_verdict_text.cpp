@@ -111,9 +111,12 @@ class VerdictWriter {
     const std::string by = size == kAverage ? "half a sample"
                            : size == 1.0    ? "one row"
                                             : fmt::format("{:g} rows", size);
+    Lines names;
+    for (const Eigen::Index place : model.late_cvs)
+      names.push_back(cv(place));
     const std::string who = study_.cv_count() == 1 ? cv(0) + " is"
-                            : model.late_cv < 0    ? "all CVs are"
-                                                   : cv(model.late_cv) + " is";
+                            : names.empty()        ? "all CVs are"
+                                                   : in_a_row(names) + (names.size() == 1 ? " is" : " are");
     if (size == 0.0)
       return "the clock of the record is off";
     if (size == kAverage)

@@ -263,7 +263,10 @@ def check_proportions(mistakes):
     assert 40 < noise["model"]["unexplained"][0]["noise"] < 60, noise["model"]
     assert noise["found"] not in ("other_controller", "unexplained_cost"), noise["verdict"]
     assert any("does not explain xD" in sentence for sentence in noise["verdict"]), noise["verdict"]
-    assert mistakes.assess(text_of(mistakes.rows))["model"]["unexplained"] == []
+    mistakes.warned(text_of(mistakes.changed(lambda k, r: r.update(xD=r["xD"] + random.Random(k).gauss(0, 0.05)))),
+                    "the noise of xD has ")
+    plain = mistakes.assess(text_of(mistakes.rows))
+    assert plain["model"]["unexplained"] == [] and not any("the noise of" in each for each in plain["warnings"]), plain
 
 
 def check_limits(mistakes):
@@ -295,7 +298,8 @@ def check_trust(bench, study):
     shards.mkdir()
     (shards / "00000001.shard").write_bytes(b"x")
     assert json.loads(bench.run(*words).stdout) == first and not shards.exists() and kept.stat().st_mtime_ns == stamp
-    trust = first["methods"][0]["trust"]
+    assert first["methods"][0]["trust"] is None and first["trial"]["same_source"]["total"] > 0, first["trial"]
+    trust = first["model"]["trust"]
     assert first["trial"]["loops"] == 60 and trust["rates"]["false_alarm_healthy"]["total"] == 30, trust
     assert trust["rates"]["detected"]["total"] == 30 and trust["as_high"]["total"] == 30, trust
     assert trust["rates"]["detected"]["value"] > 0.4 > trust["rates"]["false_alarm_healthy"]["value"], trust
@@ -394,17 +398,17 @@ def check_further_methods(bench, study):
         said = bench.run("assess", study, "clean.csv", "--trials", 8, "--methods", methods, "--calibration", path, "--json",
                          "--quiet").stdout
         with h5py.File(path) as file:
-            return json.loads(said), {name: file[f"methods/{name}"].attrs["milliseconds"] for name in ("order", "sse")
+            return json.loads(said), {name: file[f"methods/{name}"].attrs["milliseconds"] for name in ("counterfactual", "sse")
                                       if f"methods/{name}" in file}, path
 
-    whole, _, other = assess("one go", "order,sse")
-    _, first, path = assess("further", "order")
-    said, times, _ = assess("further", "order,sse")
-    assert times["order"] == first["order"] and times["sse"] > 0, (times, first)
+    whole, _, other = assess("one go", "counterfactual,sse")
+    _, first, path = assess("further", "counterfactual")
+    said, times, _ = assess("further", "counterfactual,sse")
+    assert times["counterfactual"] == first["counterfactual"] and times["sse"] > 0, (times, first)
     assert said == whole, said
     check_same(path, other)
     before = path.read_bytes()
-    for methods in "sse,order", "sse":
+    for methods in "sse,counterfactual", "sse":
         said, *_ = assess("further", methods)
         assert path.read_bytes() == before
         assert said == assess(f"one go of {methods}", methods)[0], methods

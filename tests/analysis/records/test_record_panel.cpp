@@ -371,7 +371,9 @@ TEST_CASE("a fault that begins within the record is dated, and none where nothin
 TEST_CASE("columns of another clock are no error of the model, nor is a dead time another clock",
           "[records]") {
   const auto lateness = [](const Suspect& suspect) {
-    return common_lateness(suspect.frame.as_kept, suspect.loop(), 0.05);
+    const LateCvs late = common_lateness(suspect.frame.as_kept, suspect.loop(), 0.05);
+    CHECK(late.cvs.empty());
+    return late.samples;
   };
   CHECK(lateness(Suspect{}) == 0.0);
   const Eigen::Index N = Suspect{}.record.samples();
@@ -387,8 +389,15 @@ TEST_CASE("columns of another clock are no error of the model, nor is a dead tim
       with_mismatches(slow.study.plant.G, {{0, 0, MismatchParameter::dead_time, 1.0}});
   slow.record = recorded_loop(slow.study, slower, 0);
   CHECK(lateness(slow) == 0.0);
-  early.frame.late = -1.0;
+  early.frame.late = {-1.0};
   CHECK(model_score(early.frame, early.record) < 1.2);
+  Suspect one;
+  one.record.y.row(0).head(N - 1) = Suspect{}.record.y.row(0).tail(N - 1);
+  const LateCvs found = common_lateness(one.frame.as_kept, one.loop(), 0.05);
+  CHECK(found.samples == -1.0);
+  CHECK(found.cvs == std::vector<Eigen::Index>{0});
+  one.frame.late = found;
+  CHECK(model_score(one.frame, one.record) < 1.2);
 }
 
 TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever describes them", "[records]") {

@@ -103,7 +103,8 @@ class EvidenceDraw {
     }
     if (chance(0.5)) {
       of.late = chance(0.3) ? -1.0 : 0.5;
-      of.late_cv = chance(0.5) ? -1 : index(cvs_);
+      if (chance(0.5))
+        of.late_cvs = {index(cvs_)};
       of.late_is_corrected = chance(0.3);
     }
     of.tells_apart = chance(0.8);
