@@ -49,7 +49,7 @@ class ProgramSimulation final : public ForeignSimulation {
       const bool is_number = fits && (*y)[static_cast<std::size_t>(i)].is_number();
       if (!is_number)  // JSON has no number that is not finite
         throw ForeignFailure(fmt::format("an answer to step without \"y\" of {} numbers: {}", outputs.size(),
-                                         answer.dump().substr(0, kShownOfAnswer)));
+                                         foreign_text(answer.dump(-1, ' ', true), kShownOfAnswer)));
       outputs(i) = (*y)[static_cast<std::size_t>(i)].get<double>();
     }
     return outputs;

@@ -1,11 +1,14 @@
 // usage: fuzz_inputs SOURCE_FOLDER COUNT [SEED] [KIND [FIRST]]
 //
 // COUNT damaged inputs of every kind in turn, or of one kind from the FIRST on, each drawn from the seed and
-// its number alone. An input must be read or refused: InputError, ArchiveError or a failure of a program.
-// A COUNT of 1 says why it is refused. Another exception, a report of a sanitizer or an input that takes a
-// minute ends the program; the file that the first line names then holds the number of the input, with which
-// FIRST tries it again. Exit code 0 when every kind has inputs of both sorts.
+// its number alone. An input must be read or refused: InputError, ArchiveError or a failure of a program,
+// with a message that is plain text. A COUNT of 1 says why it is refused. Another exception, a report of a
+// sanitizer or an input that takes a minute ends the program; the file that the first line names then holds
+// the number of the input, with which FIRST tries it again. Exit code 0 when every kind has inputs of both
+// sorts.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -14,9 +17,11 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,10 +32,13 @@
 
 #include "analysis/methods/method_file.hpp"
 #include "analysis/methods/method_messages.hpp"
+#include "analysis/methods/outside_program.hpp"
+#include "analysis/reproduction/scenario_quantities.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "analysis/study_files/study_library.hpp"
 #include "analysis/study_files/suite_file.hpp"
 #include "analysis/study_files/sweep_file.hpp"
+#include "analysis/study_files/table_file.hpp"
 #include "base/error.hpp"
 #include "base/system/child_process.hpp"
 #include "base/system/program_trust.hpp"
@@ -41,18 +49,24 @@
 #include "bench/shards/shard_identity.hpp"
 #include "plants/nonlinear/foreign_plant.hpp"
 #include "plants/outside/fmu_description.hpp"
+#include "plants/outside/fmu_package.hpp"
 #include "plants/outside/program_model.hpp"
 #include "results/archive/archive.hpp"
+#include "results/archive/method_json.hpp"
 #include "results/blind/blind_loops.hpp"
 #include "results/blind/verdict_file.hpp"
 #include "results/files/archive_error.hpp"
 #include "results/files/file_seal.hpp"
+#include "results/files/utf8.hpp"
 #include "results/gates/gate_check.hpp"
 #include "results/gates/gate_file.hpp"
 #include "results/records/data_sketch.hpp"
 #include "results/records/netcdf_columns.hpp"
 #include "results/records/plant_record_file.hpp"
 #include "results/records/record_file.hpp"
+#include "results/suite/board_file.hpp"
+#include "scenarios/controller/controller_program.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/results/made_up_campaign.hpp"
 #include "tests/scenarios/mutator.hpp"
 
@@ -65,6 +79,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kNetcdfSamples = 60;  // of foreign_record.nc
 constexpr double kNetcdfPatience = 10;        // s for HDF5, which comes to no end with some of them
 constexpr unsigned kPatience = 60;            // s for one input
+constexpr double kAnswerTime = 5;             // s for an answer of a program
 
 /// One kind of input: a whole one, how it is damaged, and how it is read.
 struct Kind {
@@ -121,6 +136,16 @@ const char* const kAnswer =
     R"({"flagged": true, "score": 1.5, "cv": "xD", "source": "mpm", "channels": [["xD", "R"], ["xB", "S"]],
 "mismatch": {"channel": ["xD", "R"], "parameter": "gain", "size": 1.2, "lower": 1.1, "upper": 1.3},
 "candidate": 1, "numbers": {"total": 3, "each": [1, 2], "gain": [[1, 2], [3, null]]}})";
+
+const char* const kControllerAnswers =
+    "{\"number\": 1, \"on_model\": true}\n{\"number\": 2}\n{\"number\": 3}\n"
+    "{\"number\": 4, \"u\": [0.5, -2e-3], \"u_target\": [0, 1]}\n";
+const char* const kMethodAnswer =
+    R"({"number": 1, "title": "Mine", "verdict": "v", "needs": ["setpoints", "corrected"], )"
+    R"("signals": "lists", "answers": ["cv", "source", "probabilities"], "methods": ["sse"], )"
+    R"("stated_false_alarms": 0.05, "numbers": [{"name": "total", "scope": "loop", "meaning": "m"}, )"
+    R"({"name": "each", "scope": "cv"}]})"
+    "\n";
 
 std::string record_csv() {
   std::string text = "time;xD;xB;R;S;F\n";
@@ -214,6 +239,23 @@ std::vector<std::pair<std::string, std::string>> verdict_swaps() {
           {"flagged,", "flagged,window,"}};
 }
 
+/// Letters, numbers and keys of a board that another one might have.
+std::vector<std::pair<std::string, std::string>> board_swaps() {
+  return {{"\"cells\"", "\"methods\""},
+          {"\"outcomes_2\"", "\"outcomes_9\""},
+          {"\"outcomes\"", "\"outcomes_2\""},
+          {"\"truths\":\"", "\"truths\":\"\xC3\xBF"},
+          {"\"outcomes\":\"", "\"outcomes\":\"~"},
+          {":null", ":1e308"},
+          {"0.", "-0."},
+          {":0", ":9007199254740992"},
+          {":0", ":-1"},
+          {",\"", ",null,\""},
+          {"[", "[["},
+          {"\"sse\"", "\"order\""},
+          {"wood-berry", "__proto__"}};
+}
+
 /// Other lengths of its variables and other attributes in a netCDF-4 file of kNetcdfSamples samples.
 std::vector<std::pair<std::string, std::string>> netcdf_swaps() {
   const auto length = [](std::uint64_t samples) {
@@ -279,24 +321,83 @@ std::vector<Kind> text_kinds(const fs::path& folder, const fs::path& source) {
        }}};
 }
 
-/// A program that answers by one line of a file after the other, as the plant of a study.
-Kind plant_answers(const fs::path& file) {
+/// The command of a program that answers by one line of a file after the other.
+std::vector<std::string> answering_by(const fs::path& file) {
+  return {"/bin/sh", "-c",
+          "exec 3<\"$0\"; while read -r _; do IFS= read -r line <&3 || exit; "
+          "printf '%s\\n' \"$line\"; done",
+          file.string()};
+}
+
+std::string repeated(const std::string& text, int often) {
+  std::string all;
+  for (int i = 0; i < often; ++i)
+    all += text;
+  return all;
+}
+
+/// The answers of programs: of a plant, of a controller, and of a method on what it is.
+std::vector<Kind> program_kinds(const fs::path& file) {
   ProgramSettings settings;
-  settings.command = {"/bin/sh", "-c",
-                      "exec 3<\"$0\"; while read -r _; do IFS= read -r line <&3 || exit; "
-                      "printf '%s\\n' \"$line\"; done",
-                      file.string()};
+  settings.command = answering_by(file);
   settings.mvs = settings.outputs = 2;
-  const auto model = program_model(settings, {.time_limit = 5.0});
-  return {"answers of a plant",
-          {"{}\n{\"y\": [1.5, -2e-3]}\n{\"y\": [0, 1e300]}\n"},
-          true,
-          from_file(file, [model](const fs::path&) {
-            const auto simulation = model->simulation(1.0);
-            simulation->start({}, Eigen::VectorXd::Zero(2));
-            simulation->step(Eigen::VectorXd::Ones(2));
-            simulation->step(Eigen::VectorXd::Ones(2));
-          })};
+  const auto model = program_model(settings, {.time_limit = kAnswerTime});
+  const auto plant = [model](const fs::path&) {
+    const auto simulation = model->simulation(1.0);
+    simulation->start({}, Eigen::VectorXd::Zero(2));
+    simulation->step(Eigen::VectorXd::Ones(2));
+    simulation->step(Eigen::VectorXd::Ones(2));
+  };
+  const auto controller = [study = find_study("wood-berry"), command = settings.command](const fs::path&) {
+    const ControllerProgram program(command, kAnswerTime);
+    const auto started =
+        program.controller(study.plant, study.controller, 60, qp_solver_factory("active-set"));
+    const Eigen::VectorXd d = Eigen::VectorXd::Zero(1), y = Eigen::VectorXd::Zero(2);
+    started->reset(Eigen::VectorXd::Zero(2), d);
+    started->step(y, d);
+    if (!started->failure().empty())
+      throw ForeignFailure(started->failure());
+  };
+  const auto method = [command = settings.command](const fs::path&) {
+    program_method({.name = "mine", .command = command, .time_limit = kAnswerTime});
+  };
+  return {{"answers of a plant",
+           {"{}\n{\"y\": [1.5, -2e-3]}\n{\"y\": [0, 1e300]}\n"},
+           true,
+           from_file(file, plant),
+           {{"[1.5", "[\"" + repeated("\xC3\xBC", 200) + "\""},
+            {"{}", "{\"error\": \"" + repeated("\xC3\xBC", 200) + "\"}"}}},
+          {"answers of a controller", {kControllerAnswers}, true, from_file(file, controller)},
+          {"description by a method", {kMethodAnswer}, true, from_file(file, method)}};
+}
+
+/// Files that others send: boards, FMUs, descriptions of methods in archives.
+std::vector<Kind> sent_kinds(const fs::path& folder, const fs::path& source) {
+  const auto table = [](const fs::path& file) { load_table(file, ScenarioQuantities::known()); };
+  const auto board = [suite = find_suite("quick")](const fs::path& file) { read_board(file, suite); };
+  return {{"table of the thesis",
+           {file_content(source / "scenarios/tables/table-4.10.toml"),
+            file_content(source / "scenarios/tables/figure-2.15.toml")},
+           true,
+           from_file(folder / "table.toml", table)},
+          {"board",
+           {file_content(source / "scenarios/suites/quick.board.json")},
+           true,
+           from_file(folder / "quick.board.json", board),
+           board_swaps()},
+          {"description of a method",
+           {method_description_json(answering_all())},
+           true,
+           [](const std::string& json) { method_description(json, "a.h5"); }},
+          {"FMU",
+           {file_content(MPMBENCH_TANK_FMU)},
+           false,
+           from_file(folder / "m.fmu", [](const fs::path& file) { FmuPackage{file}; }),
+           {{"modelDescription.xml", "binaries/linux64/t.so"},
+            {"modelDescription.xml", "resources/../../e.xm"},
+            {"linux64/tank.so", "../../../tank.so"},
+            {"linux64/tank.so", std::string("linux64/t\0nk.so", 15)},
+            {"binaries/linux64", "resources/linux6"}}}};
 }
 
 /// Archives, and what else is made of campaigns. `campaign` must outlive them.
@@ -395,7 +496,7 @@ std::string damaged(const Kind& kind, Mutator& mutator) {
   return kind.is_text && way < 14 ? mutator.mutated_toml(whole) : mutator.mutated_bytes(whole);
 }
 
-/// Reads the input, or refuses it.
+/// Reads the input, or refuses it by a message that a terminal, JSON and a page can show.
 void read(Kind& kind, const std::string& content, bool says_why) {
   std::string why;
   try {
@@ -411,6 +512,8 @@ void read(Kind& kind, const std::string& content, bool says_why) {
   }
   if (says_why)
     std::printf("%s\n", why.c_str());
+  if (plain_text(why) != why)
+    throw std::logic_error("a message that is no plain text: " + plain_text(why));
   ++(why.find("a file that HDF5 cannot read (") != std::string::npos ? kind.crashed : kind.refused);
 }
 
@@ -451,12 +554,13 @@ int main(int argc, char** argv) {
   const std::uint64_t seed = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 1;
   const fs::path at = fs::temp_directory_path() / fmt::format("fuzz_inputs.{}", ::getpid());
   try {
-    const TemporaryFolder folder;
+    const mpm::testing::TemporaryFolder folder;
     const Campaign campaign = drawn_campaign();
     std::vector<Kind> kinds = text_kinds(folder.path(), argv[1]);
-    kinds.push_back(plant_answers(folder / "answers"));
-    for (Kind& kind : campaign_kinds(folder.path(), argv[1], campaign))
-      kinds.push_back(std::move(kind));
+    for (std::vector<Kind>& more :
+         std::array{program_kinds(folder / "answers"), sent_kinds(folder.path(), argv[1]),
+                    campaign_kinds(folder.path(), argv[1], campaign)})
+      std::move(more.begin(), more.end(), std::back_inserter(kinds));
     std::printf("the number of the input is in %s\n", at.c_str());
     std::fflush(stdout);
     const bool both =
