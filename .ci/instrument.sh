@@ -5,6 +5,10 @@
 #   .ci/instrument.sh tsan [ARGUMENTS OF CTEST]      thread sanitizer, by clang with archer, which knows OpenMP
 #   .ci/instrument.sh coverage [ARGUMENTS OF CTEST]  the share of the lines of each room that the tests reach
 #   .ci/instrument.sh fuzz [COUNT] [SEED]            COUNT damaged inputs of each kind (2000) for every reader, under asan
+#
+# TARGETS in the environment says what to build (default: all), for arguments that choose the tests of a few programs:
+#
+#   TARGETS="test_base planted_faults" .ci/instrument.sh tsan -R '^(base|instruments):'
 set -euo pipefail
 # shellcheck source=.ci/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
@@ -27,7 +31,9 @@ if [[ $instrument == fuzz ]]; then
   mpm_build fuzz_inputs "$preset"
   exec "build/$preset/tests/reliability/fuzz_inputs" "$root" "${1:-2000}" "${2:-$(date +%Y%m%d)}"
 fi
-mpm_build all "$preset"
+for target in ${TARGETS:-all}; do
+  mpm_build "$target" "$preset"
+done
 [[ $instrument != coverage ]] || find "build/$preset" -name '*.gcda' -delete
 
 # Left out: what reads sources, what links a program without the instrument, what preloads a library of its own.
@@ -35,7 +41,7 @@ failed=0
 ctest --preset "$preset" -LE tidy -E 'structure:|installed, moved|reliability: (faults|what cannot be closed)' "$@" || failed=$?
 
 if [[ $instrument == coverage ]]; then
-  gcovr --root . --object-directory "build/$preset" --filter '(base|plants|solvers|scenarios|analysis|results|bench)/' \
+  gcovr --root . --object-directory "build/$preset" "build/$preset" --filter '(base|plants|solvers|scenarios|analysis|results|bench)/' \
     --exclude-throw-branches -j "$(nproc)" --json-summary "build/$preset/coverage.json"
   /usr/bin/python3 -B tests/instruments/coverage_by_room.py "build/$preset/coverage.json"
 fi

@@ -282,6 +282,8 @@ def check_instruments(machine):
         for kind in ("configurePresets", "buildPresets", "testPresets"):
             assert preset in [each["name"] for each in presets[kind]], (word, kind)
         run(word, code=8, TESTS_FAIL="8")
+    calls = run("tsan", TARGETS="test_base mpmbench")[1]
+    assert re.findall(r"--build --preset tsan --target (\S+)$", calls, re.MULTILINE) == ["test_base", "mpmbench"], calls
     table, _ = run("coverage")
     assert table.splitlines()[-3:] == ["| `base` | 6 | 50.0 |", "| `bench` | 6 | 0.0 |", "| all | 12 | 25.0 |"], table
     assert re.search(r"fuzz_inputs \S+ 30 7$", run("fuzz 30 7")[1], re.MULTILINE)
