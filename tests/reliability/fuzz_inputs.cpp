@@ -3,9 +3,9 @@
 // COUNT damaged inputs of every kind in turn, or of one kind from the FIRST on, each drawn from the seed and
 // its number alone. An input must be read or refused: InputError, ArchiveError or a failure of a program,
 // with a message that is plain text. A COUNT of 1 says why it is refused. Another exception, a report of a
-// sanitizer or an input that takes a minute ends the program; the file that the first line names then holds
-// the number of the input, with which FIRST tries it again. Exit code 0 when every kind has inputs of both
-// sorts.
+// sanitizer or an input that takes a minute of the processor ends the program; the file that the first line
+// names then holds the number of the input, with which FIRST tries it again. Exit code 0 when every kind has
+// inputs of both sorts.
 
 #include <algorithm>
 #include <array>
@@ -28,6 +28,7 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include "analysis/methods/method_file.hpp"
@@ -78,7 +79,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kNetcdfSamples = 60;  // of foreign_record.nc
 constexpr double kNetcdfPatience = 10;        // s for HDF5, which comes to no end with some of them
-constexpr unsigned kPatience = 60;            // s for one input
+constexpr long kPatience = 60;                // s of the processor for one input
+constexpr unsigned kDeadline = 3600;          // s for one that waits, on however busy a machine
 constexpr double kAnswerTime = 5;             // s for an answer of a program
 
 /// One kind of input: a whole one, how it is damaged, and how it is read.
@@ -519,9 +521,12 @@ void read(Kind& kind, const std::string& content, bool says_why) {
 
 void try_input(Kind& kind, std::uint64_t seed, bool says_why) {
   Mutator mutator(seed);
-  ::alarm(kPatience);
+  constexpr itimerval kStart{{0, 0}, {kPatience, 0}}, kStop{};
+  ::setitimer(ITIMER_PROF, &kStart, nullptr);
+  ::alarm(kDeadline);
   read(kind, damaged(kind, mutator), says_why);
   ::alarm(0);
+  ::setitimer(ITIMER_PROF, &kStop, nullptr);
 }
 
 bool fuzz(std::vector<Kind>& kinds, const std::string& only, std::int64_t first, std::int64_t count,
