@@ -661,15 +661,15 @@ std::vector<AssessmentNumberInfo> fault_posterior_numbers() {
   std::vector<AssessmentNumberInfo> numbers = source_probability_numbers();
   const std::vector<AssessmentNumberInfo> further{
       {"p_sensor", NumberScope::loop,
-       "part of p_other of sensors: of a CV with a bias, a drift or a standstill, or of an MD"},
-      {"valve_mv", NumberScope::loop, "place of the MV whose valve that most likely is, from 0"},
+       "part of `p_other` that belongs to sensors: of a CV (bias, drift, standstill) or of an MD"},
+      {"valve_mv", NumberScope::loop, "position of the MV whose valve most probably sticks, from 0"},
       {"ud_gain", NumberScope::loop, "gain of G_d of the likeliest disturbance alone on the worst CV",
        "CV unit"},
       {"ud_time_constant", NumberScope::loop, "its time constant", "time unit of the plant"},
       {"cv_p_mpm", NumberScope::cv, "probability that the CV has a mismatch alone"},
       {"cv_p_ud", NumberScope::cv, "probability that it has a disturbance alone"},
       {"cv_p_both", NumberScope::cv, "probability that it has both"},
-      {"cv_p_other", NumberScope::cv, "probability that a valve that sticks or a sensor shows in it"}};
+      {"cv_p_other", NumberScope::cv, "probability that a sticking valve or a sensor affects it"}};
   numbers.insert(numbers.end(), further.begin(), further.end());
   return numbers;
 }

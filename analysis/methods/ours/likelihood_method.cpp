@@ -15,8 +15,10 @@ OptionKeys keys(LikelihoodOptions& options) {
       key::choice(
           "hypotheses", options.hypotheses, {"learnt", "basic", "all"},
           "`\"basic\"`: one parameter of a channel, a disturbance on a CV, or both. `\"all\"`: in a flagged "
-          "loop also a mismatch that begins within the record and grows, for one CV, and a disturbance on an "
-          "MV or a sticking valve, for all CVs at once. `\"learnt\"`: all if errors of the model are learnt, "
+          "loop also a mismatch that begins within the record and grows or a faulty sensor, for one CV, and "
+          "a "
+          "disturbance on an MV, a sticking valve or a wrong measurement of an MD, for all CVs at once. "
+          "`\"learnt\"`: all if errors of the model are learnt, "
           "otherwise the basic ones. With `priors = \"study\"` always the basic ones"),
       key::number("fault_probability", options.fault_probability, NumberRule::inside(0, 1),
                   "probability of any fault in a loop before the record is seen, with wide priors. 0.5: "
