@@ -270,7 +270,8 @@ TEST_CASE("the column of a quality is found by its heading and by what it holds"
     const auto found = quality_column_of(file, 0);
     return found ? file.names[*found] : "";
   };
-  for (const char* heading : {"xD.Status", "XD_QUALITY", "xD q", "Status xD", "quality_xD", "xD_Validity", "xD.ok"})
+  for (const char* heading :
+       {"xD.Status", "XD_QUALITY", "xD q", "Status xD", "quality_xD", "xD_Validity", "xD.ok"})
     CHECK(quality_of("xD", {"xB.Status", heading}) == heading);
   CHECK(quality_of("xD.PV", {"xD.Status"}) == "xD.Status");
   CHECK(quality_of("xD.PV", {"xD.PV.Status"}) == "xD.PV.Status");
