@@ -252,7 +252,8 @@ std::vector<std::string> asked_of_all(const RecordFrame& frame) {
   return names;
 }
 
-/// Asks the first method of the frame of the loops `unexplained` only, and the others of all.
+/// Asks the first method of the frame of the loops `unexplained` only, and the others of all; null: all of
+/// all.
 LoopAssessor source_assessor(const RecordFrame& frame, const std::shared_ptr<const TrialFrame>& made,
                              const std::vector<std::string>& methods,
                              std::shared_ptr<const std::set<std::int64_t>> unexplained) {
@@ -261,7 +262,7 @@ LoopAssessor source_assessor(const RecordFrame& frame, const std::shared_ptr<con
     asked->methods = names;
     return trial_assessor(asked, made);
   };
-  if (methods.front() != frame.methods.front())
+  if (!unexplained || methods.front() != frame.methods.front())
     return assessor_of(methods);
   const std::vector<std::string> others(methods.begin() + 1, methods.end());
   AssessmentRecord unasked = unassessed(assessment_forms(made->study, {methods.front()})).front();
