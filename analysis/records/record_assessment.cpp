@@ -620,6 +620,8 @@ std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Stu
 
 bool RecordAssessment::is_flagged(std::size_t method) const {
   const AssessmentRecord& of = said[method];
+  if (trial && !trial->methods[method])
+    return of.answered() && of.flagged && model.score > model_threshold();
   const TrialFindings* const found = trial_of(method);
   return of.answered() &&
          (found == nullptr || std::isnan(found->threshold) ? of.flagged : of.score > found->threshold);

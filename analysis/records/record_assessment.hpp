@@ -77,7 +77,8 @@ struct RecordAssessment {
   const TrialFindings* trial_of(std::size_t method) const {
     return trial && trial->methods[method] ? &*trial->methods[method] : nullptr;
   }
-  /// Is its score above that of simulated records without a fault? Without those, does it flag the record?
+  /// Is its score above that of simulated records without a fault? Without those, does it flag the record; of
+  /// a method that nobody asked of all of them, one that the model does not explain?
   bool is_flagged(std::size_t method) const;
   /// That of the score of the model: of the simulated records, or kFarTooLarge without any.
   double model_threshold() const { return trial ? trial->model.threshold : kFarTooLarge; }
