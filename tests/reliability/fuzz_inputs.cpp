@@ -2,10 +2,10 @@
 //
 // COUNT damaged inputs of every kind in turn, or of one kind from the FIRST on, each drawn from the seed and
 // its number alone. An input must be read or refused: InputError, ArchiveError or a failure of a program,
-// with a message that is plain text. A COUNT of 1 says why it is refused. Another exception, a report of a
-// sanitizer or an input that takes a minute of the processor ends the program; the file that the first line
-// names then holds the number of the input, with which FIRST tries it again. Exit code 0 when every kind has
-// inputs of both sorts.
+// which is plain text. A COUNT of 1 says why it is refused. Another exception, a report of a sanitizer or an
+// input that takes a minute of the processor ends the program; the file that the first line names then holds
+// the number of the input, with which FIRST tries it again. Exit code 0 when every kind has inputs of both
+// sorts.
 
 #include <algorithm>
 #include <array>
@@ -498,7 +498,7 @@ std::string damaged(const Kind& kind, Mutator& mutator) {
   return kind.is_text && way < 14 ? mutator.mutated_toml(whole) : mutator.mutated_bytes(whole);
 }
 
-/// Reads the input, or refuses it by a message that a terminal, JSON and a page can show.
+/// Reads the input, or refuses it.
 void read(Kind& kind, const std::string& content, bool says_why) {
   std::string why;
   try {
@@ -511,11 +511,11 @@ void read(Kind& kind, const std::string& content, bool says_why) {
     why = error.what();
   } catch (const ForeignFailure& error) {
     why = error.what();
+    if (plain_text(why) != why)  // archives and pages take it as it is
+      throw std::logic_error("a failure that is no plain text: " + plain_text(why));
   }
   if (says_why)
     std::printf("%s\n", why.c_str());
-  if (plain_text(why) != why)
-    throw std::logic_error("a message that is no plain text: " + plain_text(why));
   ++(why.find("a file that HDF5 cannot read (") != std::string::npos ? kind.crashed : kind.refused);
 }
 
