@@ -68,6 +68,31 @@ void each_beside_threshold(const RecordRange& records, std::size_t method, const
   });
 }
 
+/// The posterior of `likelihood` as its list of faults has it, from that of each CV: the CVs are independent
+/// of each other. The probabilities that it states of the loop are those of the loops of the suites, where a
+/// mismatch beside a disturbance is rare. In a plant it is not.
+OfSources posterior_of(const AssessmentRecord& likelihood) {
+  double healthy = 1.0, neither = 1.0, no_mismatch = 1.0, no_disturbance = 1.0;
+  for (Eigen::Index cv = 0; cv < likelihood.form->find("cv_p_mpm")->rows; ++cv) {
+    const double mpm = likelihood.number("cv_p_mpm", cv), ud = likelihood.number("cv_p_ud", cv),
+                 other = likelihood.number("cv_p_other", cv);
+    const double none = std::max(0.0, 1.0 - mpm - ud - other - likelihood.number("cv_p_both", cv));
+    healthy *= none;
+    neither *= none + other;
+    no_mismatch *= none + other + ud;
+    no_disturbance *= none + other + mpm;
+  }
+  OfSources weights;
+  weights[RecordSource::mismatch] = no_disturbance - neither;
+  weights[RecordSource::disturbance] = no_mismatch - neither;
+  weights[RecordSource::both] = std::max(0.0, 1.0 - no_disturbance - no_mismatch + neither);
+  const double other = likelihood.number("p_other");
+  const double of_sensors = other > 0.0 ? likelihood.number("p_sensor") / other : 0.0;
+  weights[RecordSource::sensor] = (neither - healthy) * of_sensors;
+  weights[RecordSource::valve] = (neither - healthy) * (1.0 - of_sensors);
+  return weights;
+}
+
 }  // namespace
 
 Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method, const std::string& number,
@@ -116,15 +141,7 @@ std::vector<std::int64_t> unexplained_records(const RecordRange& records, std::s
 }
 
 OfSources source_weights(const AssessmentRecord& likelihood, const AssessmentRecord& said) {
-  OfSources weights;
-  if (likelihood.answered()) {
-    const auto of = [&likelihood](const char* name) { return std::max(0.0, likelihood.number(name)); };
-    weights[RecordSource::mismatch] = of("p_mpm");
-    weights[RecordSource::disturbance] = of("p_ud");
-    weights[RecordSource::both] = of("p_both");
-    weights[RecordSource::sensor] = of("p_sensor");
-    weights[RecordSource::valve] = of("p_other") - of("p_sensor");
-  }
+  OfSources weights = likelihood.answered() ? posterior_of(likelihood) : OfSources{};
   if (!said.answered() || !said.flagged)
     return weights;
   if (said.predicted_source == FaultSource::none) {

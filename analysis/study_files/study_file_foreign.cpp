@@ -103,11 +103,9 @@ OptionKeys output_keys(ForeignVariable& entry, const PlantModel& plant) {
     const std::vector<std::string> names = variable_names(plant.cvs);
     entry.name = names[read_one_of(table, key, names)];
   };
-  return {key::option("name", "text", "name of the parameter")
-              .required()
-              .allow("a CV; no two alike")
-              .read(read_name),
-          variable_key(entry, "a Real of causality output or local")};
+  return {
+      key::option("name", "text", "name of the CV").required().allow("a CV; no two alike").read(read_name),
+      variable_key(entry, "a Real of causality output or local")};
 }
 
 OptionKeys parameter_keys(ForeignVariable& entry) {

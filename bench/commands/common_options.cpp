@@ -44,9 +44,9 @@ void add_part_option(CLI::App& app, const std::string& name, std::string& part, 
   app.add_option(name, part, description)->check(word_that_is(allowed));
 }
 
-void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description) {
-  app.add_option("--seed", seed, description)
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
+void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description,
+              std::uint64_t largest) {
+  app.add_option("--seed", seed, description)->check(whole_number(0, largest));
 }
 
 void add_changes(CLI::App& app, std::vector<std::string>& changes, const std::string& description) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -30,7 +31,8 @@ CLI::Option* add_path(CLI::App& app, const std::string& name, std::string& path,
 void add_part_option(CLI::App& app, const std::string& name, std::string& part, const std::string& allowed,
                      const std::string& description);
 /// The master seed of a study or a suite.
-void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description);
+void add_seed(CLI::App& app, std::optional<std::uint64_t>& seed, const std::string& description,
+              std::uint64_t largest = std::numeric_limits<std::uint64_t>::max());
 /// --set of a command that runs studies: parse_study_changes().
 void add_changes(CLI::App& app, std::vector<std::string>& changes, const std::string& description);
 void add_archive(CLI::App& app, std::string& archive);

@@ -229,7 +229,8 @@ void add_suite(CommandSet& commands) {
   add_path(app, "-o,--output", options->output,
            "Folder for the archives and the leaderboard; finished cells in it are kept (default: "
            "mpmbench-SUITE; without anything to run, the finished board is shown)");
-  add_seed(app, options->choice.seed, "Another seed for the suite: a private suite");
+  add_seed(app, options->choice.seed, "Another seed for the suite: a private suite",
+           std::uint64_t{1} << 53U);  // a board file keeps it as a number of JSON
   app.add_option("--plants", options->choice.plants, "Only these plants, separated by commas")
       ->delimiter(',');
   app.add_option("--families", options->choice.families, "Only these families, separated by commas")

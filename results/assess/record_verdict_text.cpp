@@ -299,7 +299,7 @@ class VerdictWriter {
           channel,
           action.promise->gain > 0.0
               ? fmt::format("take away only {} of what the loop costs", promise_text(*action.promise))
-              : fmt::format("bring nothing ({})", promise_text(*action.promise)));
+              : fmt::format("gain nothing ({})", promise_text(*action.promise)));
     if (!channel.empty())
       return fmt::format("Wait: leave {} as it is. Test it before the loop is tuned tighter.", channel);
     if (verdict_.model.answer == ModelAnswer::fails)

@@ -247,7 +247,7 @@ def check_proportions(mistakes):
     """Values that nothing can be computed with are refused by name; noise that no model explains is not explained."""
     for name, value in (("xD", -1e160), ("xB", 1e61), ("xB", 1e300), ("R", 1e200), ("F", 1e200)):
         mistakes.refused(text_of(mistakes.changed(lambda k, r, n=name, v=value: r.update({n: v * (-1) ** k}))),
-                         f"record of {name}: found {value:g} at sample 0, out of all proportion")
+                         f"record of {name}: found {value:g} at sample 0, which is implausible")
     for name in ("R", "F"):
         mistakes.warned(text_of(mistakes.changed(lambda k, r, n=name: r.update({n: 1e200 if k == 7 else r[n]}))),
                         f"column '{name}': 1 values cannot be measurements and count as missing")
@@ -356,11 +356,11 @@ def check_valve(bench, study):
         bench.run("export", "valve.h5", "--table", "loops", "--index", index, "-o", "valve.csv")
         answer = json.loads(bench.run("assess", study, "valve.csv", "--trials", 20, "--calibration", "valve.cal.h5", "--json",
                                       "--quiet").stdout)
-        said, model, odds = answer["methods"][0], answer["model"], answer["probabilities"]
-        assert said["source"] == "other" and said["valve"] in ("R", "S"), (told[index], said)
-        assert model["source"] == "valve" and model["valve"] == said["valve"], model
-        assert f"the valve of {said['valve']} sticks" in answer["verdict"][0], answer["verdict"]
-        assert f"Check the valve of {said['valve']}" in answer["verdict"][2], answer["verdict"]
+        model, odds = answer["model"], answer["probabilities"]
+        valve = "RS"[int(told[index]["other_variable"])]
+        assert model["source"] == "valve" and model["valve"] == valve, (told[index], model)
+        assert f"the valve of {valve} sticks" in answer["verdict"][0], answer["verdict"]
+        assert f"Check the valve of {valve}" in answer["verdict"][2], answer["verdict"]
         assert abs(sum(odds.values()) - 1) < 1e-12 and max(odds, key=odds.get) == "valve", odds
         assert answer["repair"] is None and answer["candidates"] == [], answer
         assert ("R", "S")[int(told[index]["other_variable"])] == said["valve"], (told[index], said)

@@ -240,7 +240,7 @@ def check_threshold(cached):
     assert "threshold_option 'threshold'" in refused and "flagged = " in refused, refused
     cached.run("scores", *words, *cached.methods(declared=True, mine='0.5, odd = "scores"'))
     refused = cached.run("scores", *words, *cached.methods(declared=True, mine='0.25, odd = "scores"'), code=2).stderr
-    assert "another answer on loop 0" in refused and "--fresh" in refused, refused
+    assert "an answer on loop 0 that differs" in refused and "--fresh" in refused, refused
     refused = cached.run("none", *words, *cached.methods(declared=True, mine='"high"'), code=2).stderr
     assert "the name of a number among the options" in refused, refused
     cached.asked()

@@ -365,7 +365,7 @@ def check_init(files):
     assert study["controller"]["sample_time"] == 1.0, study["controller"]
     noise = study["simulation"]["noise_standard_deviation"]  # 0.01 in the study
     assert all(0.005 < noise[name] < 0.02 for name in ("xD", "xB")), noise
-    assert written.count("# Guess") >= 3 and "first guess" in written and "# To do: what R costs" in written
+    assert written.count("# Guess") >= 3 and "first guess" in written and "# To do: the cost of R" in written
     assert written.count("# To do: a guess that drives") == 2
     answer = json.loads(files.run("assess", "march.toml", "march.csv", "--trials", 0, "--methods", "sse", "--json",
                                   "--quiet").stdout)

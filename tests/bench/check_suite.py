@@ -335,7 +335,7 @@ def check_joined(tiny, shown):
     del finished["cells"][1]
     others.write_text(json.dumps(finished))
     said = subprocess.run(tiny.command(*words), capture_output=True, text=True, check=True, timeout=PATIENCE).stderr
-    assert "1 of the 12 loops came out otherwise" in said and "no such cell" in said, said
+    assert "1 of the 12 loops ended differently" in said and "no such cell" in said, said
     (tiny.folder / "tiny.board.json").unlink()
 
 

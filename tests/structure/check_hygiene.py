@@ -49,7 +49,9 @@ def check(root):
             complaints.append(f"{relative}:1: not UTF-8")
             continue
         for number, line in enumerate(text.splitlines(), start=1):
-            complaints += [f"{relative}:{number}: {c}" for c in line_complaints(line, path.suffix)]
+            # The letters of a board are those of its outcomes, and make any word.
+            said = [] if path.name.endswith(".board.json") else line_complaints(line, path.suffix)
+            complaints += [f"{relative}:{number}: {c}" for c in said]
         if path.suffix == ".hpp" and not re.search(r"^#pragma once$", text, re.MULTILINE):
             complaints.append(f"{relative}:1: header without #pragma once")
         if path.suffix in {".hpp", ".cpp"} and relative.parts[0] in tree.ROOMS:

@@ -336,19 +336,23 @@ class FaultPosterior final : public AssessmentMethod {
       return answer(probabilities, fault_probabilities(known_->for_scores(), evidence), evidence);
     const std::vector<Eigen::MatrixXd> series = healthy_series(loop, errors, inputs);
     const std::vector<WhitenedErrors> whitened = whitened_errors(series);
-    const InputWeights of_inputs = input_weights(evidence, series, whitened, inputs);
+    // Of the record of a plant, whose noise nobody knows, RecordAlternatives asks for sensors and valves.
+    const bool asks_instruments = loop.from_start().untold.empty();
+    const InputWeights of_inputs = input_weights(evidence, series, whitened, inputs, asks_instruments);
     for (std::size_t i = 0; i < known_->models().size(); ++i)
       if (is_suspect(probabilities.cvs[i])) {
         known_->of(i).add_growing(series[i], inputs.leftCols(series[i].cols()), initial_,
                                   untold_of(loop, static_cast<Eigen::Index>(i), series[i].cols()),
                                   kGrowingShare, evidence[i]);
-        evidence[i].sensor = sensor_evidence(loop, i, series, whitened);
+        if (asks_instruments)
+          evidence[i].sensor = sensor_evidence(loop, i, series, whitened);
       }
     probabilities = with_sticky_valve(
         with_input_disturbance(fault_probabilities(known_->priors(), evidence), of_inputs.disturbance),
         of_inputs.valve);
-    probabilities =
-        with_wrong_md(probabilities, md_weight(probabilities.log_odds, evidence, series, whitened, inputs));
+    if (asks_instruments)
+      probabilities =
+          with_wrong_md(probabilities, md_weight(probabilities.log_odds, evidence, series, whitened, inputs));
     Assessment assessment = answer(probabilities, probabilities, evidence);
     if (probabilities.other > probabilities.sensor)
       assessment.numbers.push_back({"valve_mv", static_cast<double>(of_inputs.valve_mv)});
@@ -387,7 +391,7 @@ class FaultPosterior final : public AssessmentMethod {
   std::vector<WhitenedErrors> whitened_errors(const std::vector<Eigen::MatrixXd>& series) const {
     std::vector<WhitenedErrors> all;
     for (std::size_t i = 0; i < series.size(); ++i)
-      all.emplace_back(known_->models()[i], series[i], known_->priors().noise_freedom);
+      all.emplace_back(known_->models()[i].noise(), series[i], known_->priors().noise_freedom);
     return all;
   }
 
@@ -419,8 +423,8 @@ class FaultPosterior final : public AssessmentMethod {
   /// that of the best one.
   InputWeights input_weights(const std::vector<CvEvidence>& evidence,
                              const std::vector<Eigen::MatrixXd>& series,
-                             const std::vector<WhitenedErrors>& whitened,
-                             const Eigen::MatrixXd& inputs) const {
+                             const std::vector<WhitenedErrors>& whitened, const Eigen::MatrixXd& inputs,
+                             bool asks_valves) const {
     const double healthy = healthy_evidence(evidence), prior = known_->priors().input;
     const InputLikelihood likelihood(known_->models(), series, study_.controller.sample_time,
                                      known_->priors().noise_freedom);
@@ -429,7 +433,7 @@ class FaultPosterior final : public AssessmentMethod {
     double most = -kInfinity;
     for (std::size_t mv = 0; mv < of_mvs.size(); ++mv) {
       found.disturbance = log_sum(found.disturbance, log_weight(prior, of_mvs[mv].log_evidence, healthy));
-      if (!(of_mvs[mv].log_evidence > -kInfinity))
+      if (!asks_valves || !(of_mvs[mv].log_evidence > -kInfinity))
         continue;
       const double valve =
           weight_of(best_sticky_valve(known_->models(), whitened, inputs, initial_,

@@ -400,7 +400,7 @@ double LearntModel::gain_of_lateness(const AssessedLoop& benchmark) const {
     Eigen::RowVectorXd moves = Eigen::RowVectorXd::Zero(y.size());
     moves.tail(y.size() - 1) = y.tail(y.size() - 1) - y.head(y.size() - 1);
     const auto [product, squares] =
-        WhitenedErrors(errors, series, kInfinity).amplitude(moves / errors.noise().deviation);
+        WhitenedErrors(errors.noise(), series, kInfinity).amplitude(moves / errors.noise().deviation);
     sum += squares > 0.0 ? 0.5 * product * product / squares : 0.0;
   }
   return sum;

@@ -2,8 +2,8 @@
 
 namespace mpm {
 
-WhitenedErrors::WhitenedErrors(const ModelErrors& model, const Eigen::MatrixXd& series, double noise_freedom)
-    : models_(base_models(model.noise(), false).models),
+WhitenedErrors::WhitenedErrors(const BaseNoise& noise, const Eigen::MatrixXd& series, double noise_freedom)
+    : models_(base_models(noise, false).models),
       e_(series.row(0)),
       likelihood_{noise_freedom, static_cast<double>((!e_.array().isNaN()).count())} {
   const Eigen::MatrixXd white = whitened(models_, series, log_determinant_);

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 
 #include "analysis/identification/kalman_whitening.hpp"
+#include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/disturbance_scan.hpp"
-#include "analysis/methods/ours/model_errors.hpp"
 
 namespace mpm {
 
@@ -17,7 +17,7 @@ class WhitenedErrors {
  public:
   /// `series` (1 + q x N): e, NaN where there is no sample, and below it Z, in standard deviations of the
   /// noise (CvLikelihood::healthy_series()).
-  WhitenedErrors(const ModelErrors& model, const Eigen::MatrixXd& series, double noise_freedom);
+  WhitenedErrors(const BaseNoise& noise, const Eigen::MatrixXd& series, double noise_freedom);
 
   Eigen::Index size() const { return e_.size(); }
   /// How many samples of the CV there are.

@@ -237,7 +237,7 @@ void read_action(const RecordVerdictText& text, Reading& reading) {
     const int expected = std::stoi(gain[1]);
     reading.demand(std::stoi(gain[2]) <= expected && expected <= std::stoi(gain[3]),
                    "a gain beside its interval");
-    reading.demand(has(text.action, "bring nothing") ? expected <= 0 : expected >= 0,
+    reading.demand(has(text.action, "gain nothing") ? expected <= 0 : expected >= 0,
                    "a gain and what is said of it: " + text.action);
   }
   std::smatch changes;
@@ -355,7 +355,7 @@ TEST_CASE("record verdict: the reader of the text above notices each contradicti
   text.action = "";
   CHECK(notices(text));
   text = well();
-  text.action = "Wait: leave xD/R as it is, its repair is expected to bring nothing (11 % (5 to 12 %)).";
+  text.action = "Wait: leave xD/R as it is, its repair is expected to gain nothing (11 % (5 to 12 %)).";
   CHECK(notices(text));
   text = well();
   text.model = "The model explains the record. at least 10.8 (10 to 11)";

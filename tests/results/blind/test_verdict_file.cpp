@@ -254,8 +254,9 @@ TEST_CASE("verdict file: every kind of line that is no verdict is refused by lin
       line("0,,1,,y1,tea,,,\n"),
       StartsWith(
           "mine.csv:2: source: found \"tea\"; allowed: none, mpm, ud, mpm_ud, other, sensor, valve, data"));
-  CHECK_THAT(line("0,,1,,,mpm,,,\n"),
-             StartsWith("mine.csv:2: source: found \"mpm\"; allowed: none, or the CV"));
+  CHECK_THAT(
+      line("0,,1,,,mpm,,,\n"),
+      StartsWith("mine.csv:2: source: found \"mpm\"; allowed: none, or a source together with its CV"));
   CHECK_THAT(line("0,,1,,,,y1,,\n"), StartsWith("mine.csv:2: channels: found 'y1'; allowed: channels CV/MV"));
   CHECK_THAT(line("0,,1,,,,y1/u9,,\n"), StartsWith("mine.csv:2: channels: found \"u9\"; allowed: u1"));
   CHECK_THAT(line("0,,1,,,,,gain,\n"), StartsWith("mine.csv:2: parameter: found 'gain'; allowed: nothing"));

@@ -31,7 +31,7 @@ TEST_CASE("a quote opens a field only where it begins, and closes it on its line
   CHECK_THROWS_WITH(rows_in("a,b\n1,\"line\nend\"\n"), Catch::StartsWith(open));
   CHECK_THROWS_WITH(rows_in("a,b\n1,\""), Catch::StartsWith(open));
   CHECK_THROWS_WITH(rows_in("a,b\n1,\"\"\""), Catch::StartsWith(open));
-  CHECK_THROWS_WITH(rows_in("a,b\n1,\"x\"y\n"), Catch::StartsWith("f:2: found 'y' behind a field in quotes"));
+  CHECK_THROWS_WITH(rows_in("a,b\n1,\"x\"y\n"), Catch::StartsWith("f:2: found 'y' after a quoted field"));
   CHECK_THROWS_WITH(rows_in("a,\"b\n1,2\n"), Catch::StartsWith("f:1: found a quote"));
 }
 

@@ -225,7 +225,7 @@ TEST_CASE("board file: what the suite cannot have given is refused, by its key",
        }),
        "repair_gain_share[0][0]"},
       {in_sse([](FileJson& of) {
-         of["repair_gain_share"] = FileJson::array({{0.0, 0}, {"Infinity", 1}});
+         of["repair_gain_share"] = FileJson::array({{0.0, 0}, {"Infinity", 0}});
        }),
        "repair_gain_share[1][0]"},
       {in_sse([](FileJson& of) {
