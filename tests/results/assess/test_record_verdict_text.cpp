@@ -151,8 +151,10 @@ bool names(const std::string& sentence, const std::string& cv) {
 
 void read_scores(const RecordVerdictText& text, const std::vector<std::string>& cvs, Reading& reading) {
   const std::string blamed =
-      std::regex_replace(text.model, std::regex("(Most likely|Likeliest).*?(?=The model does not explain|$)"),
-                         "");  // the source is another question
+      std::regex_replace(text.model,
+                         std::regex("(Most likely|Likeliest).*?(?=The model does not explain|$)|"
+                                    "In the record .*?this is corrected\\."),
+                         "");  // the source is another question, and so are the rows of a CV
   std::map<std::string, bool> above;
   bool all_below = false;
   for (const std::string& line : text.scores) {
