@@ -201,8 +201,7 @@ OptionKeys mismatch_ranges_keys(Study& study) {
            "the same for gain, time constant and dead time of one channel, each drawn",
            "the same for one parameter of every channel from an MV to one CV, each by its own amount",
            "the same for the gain of every channel of an MV, all by one factor: a fault of its actuator",
-           "the same for one parameter of every channel from an MV, each by its own amount: a drift of the "
-           "plant"},
+           "the same for one parameter of every channel from an MV, each by its own amount: a drift"},
           "relative frequencies of the extents of a mismatch")
           .otherwise("`parameter` alone"),
       refuse_no_weight("extent_weights", ranges.extent_weight),
@@ -256,8 +255,7 @@ OptionKeys disturbance_ranges_keys(Study& study) {
            "the same for one step, up or down, between 10 and 60 % of the record",
            "the same for a ramp that begins in the same part of the record and goes on to its end",
            "the same for summed white noise",
-           "the same for a sine with a period of 8 samples to a quarter of the record, as from another loop "
-           "that oscillates",
+           "the same for a sine with a period of 8 samples to a quarter of the record",
            "the same for white noise in bursts of 20 samples with 80 samples between them, on average"},
           "relative frequencies of the shapes of v")
           .otherwise("`white` alone"),
