@@ -489,6 +489,8 @@ class FaultPosterior final : public AssessmentMethod {
   /// log of the density of a sample of a stuck sensor, in deviations of the noise: it is known to a
   /// twentieth.
   static constexpr double kOfStuckSample = 3.0;
+  /// log of the weight of a noisy measurement of an MD over all faults of CVs, once has_noisy_md() says so:
+  /// large enough to decide, and no likelihood.
   static constexpr double kOfNoisyMd = 10.0;
 
   Assessment answer(const FaultProbabilities& probabilities, const FaultProbabilities& scores,

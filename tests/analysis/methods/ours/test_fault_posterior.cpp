@@ -202,6 +202,18 @@ TEST_CASE("posterior of a loop: one fault and several, from weights in closed fo
   CHECK(sure.log_odds == Approx(5000.0 + std::log(0.1)));
 }
 
+TEST_CASE("what was true where the same was seen: probabilities, none of them certain") {
+  for (const FaultSource seen : enumerators<FaultSource>()) {
+    double sum = 0.0;
+    for (const double share : true_sources(seen)) {
+      CHECK(share > 0.0);
+      CHECK(share < 1.0);
+      sum += share;
+    }
+    CHECK(sum == Approx(1.0));
+  }
+}
+
 TEST_CASE(
     "posterior of a loop: a disturbance on an MV takes its share of the probability, CVs keep their faults") {
   // Weights against nothing: 9 before, of which 4 mismatches, 3 disturbances and 2 both; then 30 for the MV.
