@@ -23,6 +23,9 @@ namespace {
 constexpr std::uint64_t kDrawSeed = 43;
 /// Part of the mean square of a CV below which the error of a channel is not worth a simulation.
 constexpr double kFaintShare = 1e-3;
+/// What a CV costs in the loop of a plant over what it costs in the record, if the plant may be the one that
+/// made it: the controller of a record is not quite that of the study.
+constexpr double kMostUnlike = 2.0;
 
 }  // namespace
 
@@ -148,6 +151,8 @@ void RepairProspects::run(const Seen& seen, std::vector<RepairProspect>& prospec
     }
     left = from_washout(study_, left);
     const std::optional<Outcome> now = outcome(study_.plant.G, plant, seen, left);
+    if (now && !may_have_made(seen, *now))
+      continue;
     for (std::size_t i = 0; i < prospects.size() && now; ++i) {
       const RepairedChannel& repair = prospects[i].repair;
       TransferMatrix repaired = study_.plant.G;
@@ -186,6 +191,14 @@ std::optional<RepairProspects::Outcome> RepairProspects::outcome(const TransferM
   return Outcome{loop_cost(study_, loop, seen.counted).total(),
                  seen.counted.empty() ? variances(loop.y, variance_centres(study_, 0, loop.y.cols()))
                                       : counted_costs(study_, loop, seen.counted)};
+}
+
+bool RepairProspects::may_have_made(const Seen& seen, const Outcome& now) const {
+  if (seen.counted.empty())
+    return true;
+  Trajectory recorded;
+  recorded.y = gaps_closed(seen.whole.y);
+  return (now.variances.array() <= kMostUnlike * counted_costs(study_, recorded, seen.counted).array()).all();
 }
 
 std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects) {

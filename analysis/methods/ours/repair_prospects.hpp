@@ -61,7 +61,8 @@ struct RepairProspect {
 ///   gain(i, j) = (J(G0) - J(G0 with the repaired channel (i, j))) / J(G0)
 ///
 /// of the loops of plant P under n, with the controller on either model. A channel is repaired to its
-/// posterior mean, except for one whose repair is `given`.
+/// posterior mean, except for one whose repair is `given`. Plants whose loop costs much more than the record
+/// do not count.
 class RepairProspects {
  public:
   /// All must outlive it. Options are those of the study.
@@ -81,6 +82,10 @@ class RepairProspects {
   std::vector<RepairProspect> candidates(const Seen& seen, const std::optional<RepairedChannel>& given) const;
   void run(const Seen& seen, std::vector<RepairProspect>& prospects) const;
   Eigen::RowVectorXd response(const Seen& seen, const TransferFunction& channel, Eigen::Index input) const;
+  /// Does the loop of a plant resemble the record? Only asked where samples are counted, as in the record of
+  /// a plant: there the controller of the study may be unstable on a plant on which that of the record is
+  /// not.
+  bool may_have_made(const Seen& seen, const Outcome& now) const;
   std::optional<Outcome> outcome(const TransferMatrix& model, const TransferMatrix& plant, const Seen& seen,
                                  const Eigen::MatrixXd& disturbance) const;
 
