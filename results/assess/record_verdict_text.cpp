@@ -282,7 +282,10 @@ class VerdictWriter {
           "expected to gain nothing ({}).",
           channel, promise_text(*action.promise));
     if (action.worsened.empty())
-      return fmt::format("Test {} with steps: the record does not tell how to correct it.", channel);
+      return fmt::format("Test {} with steps: {}.", channel,
+                         verdict_.model.mismatch && !std::isnan(verdict_.model.mismatch->size)
+                             ? "what its repair would bring cannot be told from this record"
+                             : "the record does not tell how to correct it");
     Lines worse;
     for (const Eigen::Index each : action.worsened)
       worse.push_back(cv(each));
