@@ -4,11 +4,11 @@
 
 namespace mpm {
 
-Eigen::VectorXd autoregression_of(const Eigen::VectorXd& r) {
-  const Eigen::Index n = r.size() - kNoiseOrder;
-  Eigen::MatrixXd past(n, kNoiseOrder);
-  for (Eigen::Index lag = 0; lag < kNoiseOrder; ++lag)
-    past.col(lag) = r.segment(kNoiseOrder - 1 - lag, n);
+Eigen::VectorXd autoregression_of(const Eigen::VectorXd& r, Eigen::Index order) {
+  const Eigen::Index n = r.size() - order;
+  Eigen::MatrixXd past(n, order);
+  for (Eigen::Index lag = 0; lag < order; ++lag)
+    past.col(lag) = r.segment(order - 1 - lag, n);
   Eigen::MatrixXd A = past.transpose() * past;
   A.diagonal().array() += 1e-12 * A.trace() + 1e-300;
   return A.ldlt().solve(past.transpose() * r.tail(n));

@@ -8,8 +8,8 @@ namespace mpm {
 /// of a CV.
 inline constexpr Eigen::Index kNoiseOrder = 3;
 
-/// a of the signal r, by least squares over its samples, which follow each other.
-Eigen::VectorXd autoregression_of(const Eigen::VectorXd& r);
+/// a (`order`) of the signal r, by least squares over its samples, which follow each other.
+Eigen::VectorXd autoregression_of(const Eigen::VectorXd& r, Eigen::Index order = kNoiseOrder);
 
 /// The columns of `signals` (N x m) less what a predicts of them; the first samples, whose past is not known,
 /// are left out (N - a.size() x m).

@@ -14,6 +14,7 @@
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/coloured_noise.hpp"
+#include "analysis/statistics/chi_squared.hpp"
 #include "base/non_finite.hpp"
 #include "plants/linear/zero_order_hold.hpp"
 #include "scenarios/faults/fault.hpp"
@@ -24,7 +25,12 @@ namespace {
 
 using Columns = Eigen::MatrixXd;
 
-/// A_l' B_m of signals (n x .) that are l and m samples late, l, m <= kNoiseOrder, over the samples that have
+/// Of the autoregression of the noise: of what has passed two lags, with white noise beside it.
+constexpr Eigen::Index kOrder = 6;
+/// Of the errors of other CVs that are in those of a CV, and of all CVs in what its inputs are held against.
+constexpr Eigen::Index kOtherLags = 6, kOwnLags = 12;
+
+/// A_l' B_m of signals (n x .) that are l and m samples late, l, m <= kOrder, over the samples that have
 /// a past of this length. The products of signals that an autoregression whitens follow from them without the
 /// signals:
 ///
@@ -32,9 +38,9 @@ using Columns = Eigen::MatrixXd;
 class LaggedProducts {
  public:
   LaggedProducts(const Columns& A, const Columns& B) {
-    const Eigen::Index n = A.rows(), count = n - kNoiseOrder;
+    const Eigen::Index n = A.rows(), count = n - kOrder;
     const auto late = [count](const Columns& signals, Eigen::Index lag) {
-      return signals.middleRows(kNoiseOrder - lag, count);
+      return signals.middleRows(kOrder - lag, count);
     };
     for (Eigen::Index m = 0; m < kLags; ++m)
       at(0, m) = late(A, 0).transpose() * late(B, m);
@@ -43,7 +49,7 @@ class LaggedProducts {
     // One sample later a sample enters at the start, and one leaves at the end.
     for (Eigen::Index l = 0; l + 1 < kLags; ++l)
       for (Eigen::Index m = 0; m + 1 < kLags; ++m)
-        at(l + 1, m + 1) = at(l, m) + A.row(kNoiseOrder - 1 - l).transpose() * B.row(kNoiseOrder - 1 - m) -
+        at(l + 1, m + 1) = at(l, m) + A.row(kOrder - 1 - l).transpose() * B.row(kOrder - 1 - m) -
                            A.row(n - 1 - l).transpose() * B.row(n - 1 - m);
   }
 
@@ -59,7 +65,7 @@ class LaggedProducts {
   }
 
  private:
-  static constexpr Eigen::Index kLags = kNoiseOrder + 1;
+  static constexpr Eigen::Index kLags = kOrder + 1;
 
   Columns& at(Eigen::Index l, Eigen::Index m) { return products_[static_cast<std::size_t>(l * kLags + m)]; }
   const Columns& at(Eigen::Index l, Eigen::Index m) const {
@@ -69,18 +75,106 @@ class LaggedProducts {
   std::array<Columns, static_cast<std::size_t>(kLags* kLags)> products_;
 };
 
-/// One CV: its errors, and how likely they are under a hypothesis.
+/// Q of A = Q R, n x m.
+Columns basis_of(const Columns& A) {
+  return Eigen::HouseholderQR<Columns>(A).householderQ() * Columns::Identity(A.rows(), A.cols());
+}
+
+/// Which errors of a CV in the same sample and in those before tell of a disturbance.
+struct PastErrors {
+  Eigen::Index cv, first, last;  ///< lags
+};
+
+/// Errors of CVs, N x columns. A sample that is missing counts as 0.
+Columns past_errors(const AssessedLoop& loop, const std::vector<PastErrors>& asked) {
+  const Eigen::Index N = loop.samples();
+  Eigen::Index column = 0;
+  for (const PastErrors& of : asked)
+    column += of.last - of.first + 1;
+  Columns past = Columns::Zero(N, column);
+  column = 0;
+  for (const PastErrors& of : asked) {
+    const Eigen::VectorXd e = (loop.y.row(of.cv) - loop.y_sim.row(of.cv)).transpose();
+    for (Eigen::Index lag = of.first; lag <= of.last; ++lag)
+      past.col(column++).tail(N - lag) = e.array().isNaN().select(0.0, e).head(N - lag);
+  }
+  return past;
+}
+
+/// `lags`, or fewer: a record has ten times as many samples as they have columns.
+Eigen::Index fitting_lags(const AssessedLoop& loop, Eigen::Index lags) {
+  constexpr Eigen::Index kSamplesToColumn = 10;
+  return std::clamp<Eigen::Index>(loop.samples() / (kSamplesToColumn * loop.y.rows()), 1, lags);
+}
+
+/// What a disturbance that reaches several CVs shows of this one in the others: their errors before, and of
+/// those above it in the same sample, too, so that errors of one sample that are alike count once.
+Columns others_errors(const AssessedLoop& loop, Eigen::Index cv) {
+  const Eigen::Index lags = fitting_lags(loop, kOtherLags);
+  std::vector<PastErrors> asked;
+  for (Eigen::Index other = 0; other < loop.y.rows(); ++other)
+    if (other != cv)
+      asked.push_back({other, other < cv ? 0 : 1, lags});
+  return past_errors(loop, asked);
+}
+
+/// What the controller knows of a disturbance of any shape.
+Columns known_errors(const AssessedLoop& loop) {
+  const Eigen::Index lags = fitting_lags(loop, kOwnLags);
+  std::vector<PastErrors> asked;
+  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
+    asked.push_back({cv, 1, lags});
+  return past_errors(loop, asked);
+}
+
+/// Samples that follow each other.
+struct Part {
+  Eigen::Index first, count;
+
+  Columns of(const Columns& signals) const { return signals.middleRows(first, count); }
+};
+
+/// One CV: its errors, and how likely they are under a hypothesis. From the onset of a fault on the noise may
+/// be another one.
 class CvErrors {
  public:
-  CvErrors(const AssessedLoop& loop, const ChannelErrorFit& fit, Eigen::Index cv)
-      : samples_(fit.samples), X_(fit.X.size() == 0 ? Columns(fit.e.size(), 0) : fit.X), XX_(X_, X_) {
+  CvErrors(const AssessedLoop& loop, const ChannelErrorFit& fit, Eigen::Index cv) : samples_(fit.samples) {
+    const Columns others = others_errors(loop, cv);
+    const Eigen::Index p = fit.X.size() == 0 ? 0 : fit.X.cols();
+    X_.resize(fit.e.size(), p + others.cols());
+    if (p > 0)
+      X_.leftCols(p) = fit.X;
+    X_.rightCols(others.cols()) = others(samples_, Eigen::all);
+    prior_ = Eigen::VectorXd::Zero(X_.cols());
+    prior_.head(p).setOnes();
     if (!loop.untold.empty()) {
       const Columns untold = loop.untold[static_cast<std::size_t>(cv)](Eigen::all, samples_).transpose();
-      const Eigen::HouseholderQR<Columns> qr(untold);
-      Q_ = qr.householderQ() * Columns::Identity(untold.rows(), untold.cols());
+      Q_ = basis_of(untold);
     }
     e_ = told(fit.e);
-    none_ = log_likelihood(e_, Columns(e_.size(), 0));
+    divide(e_.size());
+  }
+
+  /// Lets the noise be another one from the best of some samples on, or from `onset` on, where that explains
+  /// the errors better.
+  void find_change(Eigen::Index onset) {
+    constexpr Eigen::Index kTried = 12;
+    const double penalty = 0.5 * (kOrder + 2.0) * log_samples();
+    Eigen::Index best = e_.size();
+    double most = none_;
+    const auto take = [&](Eigen::Index change) {
+      if (change < kFewestSamples || e_.size() - change < kFewestSamples)
+        return;
+      divide(change);
+      if (none_ - penalty > most) {
+        most = none_ - penalty;
+        best = change;
+      }
+    };
+    take(std::lower_bound(samples_.begin(), samples_.end(), onset) - samples_.begin());
+    for (Eigen::Index part = 1; part < kTried; ++part)
+      take(part * e_.size() / kTried);
+    divide(best);
   }
 
   double none() const { return none_; }
@@ -94,23 +188,55 @@ class CvErrors {
   }
   double with(const Columns& free) const { return log_likelihood(e_, told_columns(free)); }
 
-  /// F of the regression of the innovations on `moves` (N of the loop), where h and `free` are in the errors.
-  double dependence(const Eigen::RowVectorXd& h, const Columns& free, const Columns& moves) const {
-    Eigen::VectorXd w;
-    log_likelihood(e_ - told(h(samples_).transpose()), told_columns(free), &w);
-    Columns M(w.size(), moves.cols());
-    for (Eigen::Index column = 0; column < moves.cols(); ++column)
-      M.col(column) = moves.col(column)(samples_).tail(w.size());
-    M.rowwise() -= M.colwise().mean();
-    w.array() -= w.mean();
-    const Eigen::ColPivHouseholderQR<Columns> qr(M);
-    const auto p = static_cast<double>(qr.rank()), n = static_cast<double>(w.size());
-    const double left = (w - M * qr.solve(w)).squaredNorm();
-    return p > 0.0 && n > p + 2.0 && left > 0.0 ? (w.squaredNorm() - left) / p / (left / (n - p)) : kNaN;
+  /// input_dependence() since the onset, where h and `free` are in the errors; `moves` and `past` as there (N
+  /// of the loop), and `level` that of this CV.
+  double dependence(const Eigen::RowVectorXd& h, const Columns& free, const Columns& moves,
+                    const Columns& past, double level) const {
+    Eigen::VectorXd left;
+    log_likelihood(e_ - told(h(samples_).transpose()), told_columns(free), &left);
+    const Part& last = parts_.back();
+    const auto since = [this, &last](const Columns& signals) -> Columns {
+      return last.of(signals(samples_, Eigen::all));
+    };
+    Columns P(last.count, past.cols() + 1), M = since(moves);
+    P << since(past), Eigen::VectorXd::Ones(last.count);
+    const Columns known = basis_of(P);
+    M -= known * (known.transpose() * M);
+    Eigen::VectorXd w = last.of(left);
+    w -= known * (known.transpose() * w);
+    Eigen::ColPivHouseholderQR<Columns> qr(M);
+    const Eigen::Index p = qr.rank();
+    if (p == 0 || last.count <= known.cols() + p || w.isZero(0.0))
+      return kNaN;
+    const Columns Z = qr.householderQ() * Columns::Identity(last.count, p);
+    const Eigen::VectorXd Zw = Z.transpose() * w;
+    const Columns S = Z.transpose() * w.array().square().matrix().asDiagonal() * Z;
+    return Zw.dot(S.ldlt().solve(Zw)) / chi_squared_upper_quantile(level, static_cast<double>(p));
   }
 
  private:
   static constexpr int kPasses = 3;
+  static constexpr Eigen::Index kFewestSamples = 50;
+
+  /// The noise changes after this many samples.
+  void divide(Eigen::Index change) {
+    parts_ = {{0, change}};
+    if (change < e_.size())
+      parts_.push_back({change, e_.size() - change});
+    XX_.clear();
+    for (const Part& part : parts_) {
+      const Columns X = part.of(X_);
+      XX_.emplace_back(X, X);
+    }
+    none_ = log_likelihood(e_, Columns(e_.size(), 0));
+  }
+
+  /// What is known of a part, and the noise that it has.
+  struct NoisePart {
+    LaggedProducts Xe, FX, FF, Fe;
+    double variance;
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(kOrder);
+  };
 
   Eigen::VectorXd told(const Eigen::VectorXd& signal) const {
     return Q_.size() == 0 ? signal : Eigen::VectorXd(signal - Q_ * (Q_.transpose() * signal));
@@ -124,35 +250,55 @@ class CvErrors {
   }
 
   double log_likelihood(const Eigen::VectorXd& e, const Columns& free,
-                        Eigen::VectorXd* innovations = nullptr) const {
-    const auto n = static_cast<double>(e.size());
+                        Eigen::VectorXd* left = nullptr) const {
     const Eigen::Index p = X_.cols(), q = free.cols();
-    const LaggedProducts Xe(X_, e), FX(free, X_), FF(free, free), Fe(free, e);
-    Eigen::VectorXd a = Eigen::VectorXd::Zero(kNoiseOrder), of_errors, w;
-    double variance = std::max(1e-300, e.squaredNorm() / n);
-    for (int pass = 0; pass < kPasses; ++pass) {
-      Columns A(p + q, p + q);
-      A << XX_.whitened_by(a), FX.whitened_by(a).transpose(), FX.whitened_by(a), FF.whitened_by(a);
-      Eigen::VectorXd right(p + q);
-      right << Xe.whitened_by(a), Fe.whitened_by(a);
-      A /= variance;
-      A.diagonal().head(p).array() += 1.0;
-      A.diagonal().array() += 1e-12;
-      of_errors = A.ldlt().solve(right / variance);
-      const Eigen::VectorXd left = e - X_ * of_errors.head(p) - free * of_errors.tail(q);
-      w = mpm::whitened_by(a, left);
-      variance = std::max(1e-300, w.squaredNorm() / static_cast<double>(w.size()));
-      if (pass + 1 < kPasses)
-        a = autoregression_of(left);
+    std::vector<NoisePart> noises;
+    for (const Part& part : parts_) {
+      const Columns X = part.of(X_), F = part.of(free), own = part.of(e);
+      noises.push_back({{X, own},
+                        {F, X},
+                        {F, F},
+                        {F, own},
+                        std::max(1e-300, own.squaredNorm() / static_cast<double>(part.count))});
     }
-    if (innovations != nullptr)
-      *innovations = w;
-    return -0.5 * n * std::log(variance) - 0.5 * of_errors.head(p).squaredNorm();
+    Eigen::VectorXd of_errors, errors = e;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      Columns A = Columns::Zero(p + q, p + q);
+      Eigen::VectorXd right = Eigen::VectorXd::Zero(p + q);
+      for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const NoisePart& noise = noises[i];
+        const Columns FX = noise.FX.whitened_by(noise.a);
+        A.topLeftCorner(p, p) += XX_[i].whitened_by(noise.a) / noise.variance;
+        A.topRightCorner(p, q) += FX.transpose() / noise.variance;
+        A.bottomLeftCorner(q, p) += FX / noise.variance;
+        A.bottomRightCorner(q, q) += noise.FF.whitened_by(noise.a) / noise.variance;
+        right.head(p) += noise.Xe.whitened_by(noise.a) / noise.variance;
+        right.tail(q) += noise.Fe.whitened_by(noise.a) / noise.variance;
+      }
+      A.diagonal().head(p) += prior_;
+      A.diagonal().array() += 1e-12;
+      of_errors = A.ldlt().solve(right);
+      errors = e - X_ * of_errors.head(p) - free * of_errors.tail(q);
+      for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const Eigen::VectorXd own = parts_[i].of(errors), w = mpm::whitened_by(noises[i].a, own);
+        noises[i].variance = std::max(1e-300, w.squaredNorm() / static_cast<double>(w.size()));
+        if (pass + 1 < kPasses)
+          noises[i].a = autoregression_of(own, kOrder);
+      }
+    }
+    if (left != nullptr)
+      *left = errors;
+    double sum = -0.5 * prior_.dot(of_errors.head(p).cwiseAbs2());
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      sum -= 0.5 * static_cast<double>(parts_[i].count) * std::log(noises[i].variance);
+    return sum;
   }
 
   std::vector<Eigen::Index> samples_;
   Columns X_, Q_;
-  LaggedProducts XX_;
+  Eigen::VectorXd prior_;  ///< precision of the coefficients of X
+  std::vector<Part> parts_;
+  std::vector<LaggedProducts> XX_;  ///< of each part
   Eigen::VectorXd e_;
   double none_ = 0.0;
 };
@@ -182,6 +328,11 @@ Columns moves_of(const Study& study, const AssessedLoop& loop, Eigen::Index cv) 
   return columns;
 }
 
+/// Of a test of one CV: 1 % over all CVs.
+double level_of(const AssessedLoop& loop) {
+  return 0.01 / static_cast<double>(loop.y.rows());
+}
+
 /// Where a valve stands whose signal is u.
 Eigen::RowVectorXd positions(ValveStem&& stem, const Eigen::RowVectorXd& u) {
   Eigen::RowVectorXd x(u.size());
@@ -200,29 +351,33 @@ class Comparison {
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const ChannelErrorFit fit = fits.of(loop, cv);
       cvs_.emplace_back(loop, fit, cv);
+      cvs_.back().find_change(onset_);
       none_ += cvs_.back().none();
     }
   }
 
   RecordAlternatives all() {
     RecordAlternatives found{.disturbance = none_};
-    found.mismatch = mismatch();
+    mismatch(found);
     data(found);
     sensor(found);
     valve(found);
-    const Columns none(loop_.samples(), 0);
+    const Columns nothing(loop_.samples(), 0);
     const auto none_of = [this](Eigen::Index) -> Eigen::RowVectorXd {
       return Eigen::RowVectorXd::Zero(loop_.samples());
     };
-    found.fit[RecordSource::disturbance] = dependence(none_of, none);
-    found.fit[RecordSource::sensor] = found.fit[RecordSource::disturbance];
+    const auto no_column = [&nothing](Eigen::Index) { return nothing; };
+    found.fit[RecordSource::disturbance] = dependence(none_of, no_column);
+    found.fit[RecordSource::sensor] = dependence(none_of, [this, &found, &nothing](Eigen::Index cv) {
+      return cv == found.sensor_cv ? Columns(drift_) : nothing;
+    });
     found.fit[RecordSource::data] = dependence(
         [this, &found](Eigen::Index cv) -> Eigen::RowVectorXd {
           const Eigen::RowVectorXd y_sim = loop_.y_sim.row(cv);
           const bool is_late = found.data_cv < 0 || found.data_cv == cv;
           return late_by(y_sim, is_late ? found.late : 0.0) - y_sim;
         },
-        none);
+        no_column);
     if (found.valve_mv >= 0)
       found.fit[RecordSource::valve] = dependence(
           [this, &found](Eigen::Index cv) -> Eigen::RowVectorXd {
@@ -231,7 +386,7 @@ class Comparison {
               return Eigen::RowVectorXd::Zero(loop_.samples());
             return channel_response(discretise(channel, study_.controller.sample_time), off_, 0.0);
           },
-          none);
+          no_column);
     return found;
   }
 
@@ -249,7 +404,7 @@ class Comparison {
     double samples = 0.0;
     for (Eigen::Index cv = 0; cv < ny; ++cv) {
       none(cv) = with_free_gains(cv, 0.0);
-      wrong(cv) = mismatch(cv);
+      wrong(cv) = of(cv).none() + std::max(0.0, mismatch(cv).gain);
       samples = std::max(samples, of(cv).log_samples());
     }
     LateCvs best;
@@ -279,12 +434,15 @@ class Comparison {
   }
 
  private:
-  /// The largest F of a CV, where h(cv) and `free` are in its errors.
-  template <class H>
-  double dependence(H h, const Columns& free) const {
+  /// The largest F of a CV, where h(cv) and free(cv) are in its errors.
+  template <class H, class Free>
+  double dependence(H h, Free free) const {
+    const Columns past = known_errors(loop_);
     double most = 0.0;
     for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv)
-      if (const double F = of(cv).dependence(h(cv), free, moves_of(study_, loop_, cv)); F > most)
+      if (const double F =
+              of(cv).dependence(h(cv), free(cv), moves_of(study_, loop_, cv), past, level_of(loop_));
+          F > most)
         most = F;
     return most;
   }
@@ -310,47 +468,66 @@ class Comparison {
     return place < study_.mv_count() ? loop_.u.row(place) : loop_.d.row(place - study_.mv_count());
   }
 
-  /// The best single parameter of a channel of a CV.
-  double mismatch(Eigen::Index cv) const {
-    double best = of(cv).none();
+  /// A mismatch of one parameter of the channel of an input, and by how much it is likelier than none.
+  struct LikelyMismatch {
+    Eigen::Index place = -1;
+    MismatchParameter parameter = MismatchParameter::gain;
+    double gain = -kInfinity;
+  };
+
+  /// The best one of a CV.
+  LikelyMismatch mismatch(Eigen::Index cv) const {
+    LikelyMismatch best;
     for (Eigen::Index place = 0; place < study_.mv_count() + study_.md_count(); ++place)
-      best = std::max(best, of_channel(cv, place));
+      if (const LikelyMismatch here = of_channel(cv, place); here.gain > best.gain)
+        best = here;
     return best;
   }
 
-  /// That of each CV.
-  double mismatch() const {
-    double sum = 0.0;
-    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv)
-      sum += mismatch(cv);
-    return sum;
+  /// That of each CV for which there is one, and of one CV at least.
+  void mismatch(RecordAlternatives& found) const {
+    double sum = 0.0, most = -kInfinity;
+    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
+      const LikelyMismatch best = mismatch(cv);
+      sum += std::max(0.0, best.gain);
+      if (!(best.gain > most))
+        continue;
+      most = best.gain;
+      found.named.reset();
+      if (best.place < study_.mv_count())
+        found.named = {{cv, best.place}, best.parameter};
+    }
+    found.mismatch = none_ + (most > 0.0 ? sum : most);
   }
 
-  double of_channel(Eigen::Index cv, Eigen::Index place) const {
+  LikelyMismatch of_channel(Eigen::Index cv, Eigen::Index place) const {
     constexpr double kTimes[] = {0.35, 0.5, 0.7, 1.4, 2.0, 2.8};
     constexpr double kShifts[] = {-3.0, -2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0};
+    LikelyMismatch best{.place = place};
     const TransferFunction channel = study_.assessed_channel(cv, place);
     if (channel.is_zero())
-      return -kInfinity;
-    const double parameters = onset_ > 0 ? 3.0 : 2.0;
-    const double penalty = 0.5 * parameters * of(cv).log_samples();
+      return best;
+    const double parameters = onset_ > 0 ? 3.0 : 2.0,
+                 none = of(cv).none() + 0.5 * parameters * of(cv).log_samples();
     const Eigen::RowVectorXd u = input(place), nominal = response(channel, u);
     const auto masked = [this](Eigen::RowVectorXd h) {
       h.head(onset_).setZero();
       return h;
     };
-    double best = of(cv).with(masked(nominal).transpose());
+    best.gain = of(cv).with(masked(nominal).transpose()) - none;
     const auto take = [&](MismatchParameter parameter, double size) {
       const TransferFunction other =
           with_mismatches(TransferMatrix{{channel}}, {{0, 0, parameter, size}})(0, 0);
-      best = std::max(best, of(cv).without(masked(response(other, u) - nominal)));
+      const double gain = of(cv).without(masked(response(other, u) - nominal)) - none;
+      if (gain > best.gain)
+        best = {place, parameter, gain};
     };
     for (const double factor : kTimes)
       take(MismatchParameter::time_constant, factor);
     for (const double shift : kShifts)
       if (const double time = shift * study_.controller.sample_time; channel.dead_time() + time >= 0.0)
         take(MismatchParameter::dead_time, time);
-    return best - penalty;
+    return best;
   }
 
   void data(RecordAlternatives& found) const {
@@ -377,7 +554,7 @@ class Comparison {
     }
   }
 
-  void sensor(RecordAlternatives& found) const {
+  void sensor(RecordAlternatives& found) {
     constexpr Eigen::Index kStarts = 12;
     found.sensor = -kInfinity;
     const Eigen::Index N = loop_.samples();
@@ -389,6 +566,7 @@ class Comparison {
         if (here > found.sensor) {
           found.sensor = here;
           found.sensor_cv = cv;
+          drift_ = ramp;
         }
       }
   }
@@ -453,6 +631,7 @@ class Comparison {
   std::vector<CvErrors> cvs_;
   double none_ = 0.0;
   Eigen::RowVectorXd off_;  ///< x - u of the best valve
+  Eigen::VectorXd drift_;   ///< of the most likely sensor, of any size
 };
 
 }  // namespace
@@ -478,7 +657,7 @@ double input_dependence(const Study& study, const AssessedLoop& loop, const Chan
                         Eigen::Index cv) {
   return CvErrors(loop, fit, cv)
       .dependence(Eigen::RowVectorXd::Zero(loop.samples()), Columns(loop.samples(), 0),
-                  moves_of(study, loop, cv));
+                  moves_of(study, loop, cv), known_errors(loop), level_of(loop));
 }
 
 LateCvs common_lateness(const Study& study, const AssessedLoop& loop, double delta) {

@@ -15,12 +15,16 @@ namespace mpm {
 
 /// How well each sort of fault explains the simulation errors of a record, on one scale. With e_i = y - y_sim
 /// of CV i without what no record can tell (AssessedLoop::untold), X_i the responses to errors of a healthy
-/// model (ChannelErrorFit) and n an autoregression of order 3,
+/// model (ChannelErrorFit), E_i the errors of the other CVs in up to six samples before (those above i also
+/// in the same sample), and n an autoregression of order 6,
 ///
-///   e_i = h_i + X_i a_i + n_i,   a_i ~ N(0, I),   L = sum_i (-N/2 log s_i^2 - |a_i|^2 / 2) - k/2 log N
+///   e_i = h_i + X_i a_i + E_i b_i + n_i,   a_i ~ N(0, I),   L = sum_i (-N/2 log s_i^2 - |a_i|^2 / 2) - k/2
+///   log N
 ///
 /// s_i^2 the mean square of the innovations, k the parameters of the hypothesis (Schwarz 1978). The slow part
-/// of n is a disturbance, which may be there in each of them:
+/// of n is a disturbance, which may be there in each of them; E_i has one that reaches several CVs, such as
+/// that of an MV. From one sample on, the same for all hypotheses, n may be another autoregression, where
+/// that brings more than its k/2 log N.
 ///
 /// | hypothesis  | h                                                                                        |
 /// |-------------|------------------------------------------------------------------------------------------|
@@ -35,6 +39,7 @@ struct RecordAlternatives {
   Eigen::Index data_cv = -1;                                                        ///< -1: all CVs
   double late = 0.0;                                                                ///< s
   Eigen::Index sensor_cv = -1, valve_mv = -1;
+  std::optional<NamedMismatch> named = {};  ///< the most likely mismatch, without a size; none: that of an MD
   OfSources fit = {};  ///< the largest input_dependence() of a CV where this is taken off; none of a mismatch
 };
 
@@ -42,9 +47,11 @@ struct RecordAlternatives {
 RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& loop, double delta,
                                        const std::optional<FaultOnset>& onset);
 
-/// Do the innovations of the errors of a CV still depend on its inputs? F of their regression on the last six
-/// moves of each input behind its dead time, 1 on average where a disturbance explains them. An absolute
-/// test: what no hypothesis explains raises it.
+/// Do the inputs help to predict the errors of a CV beside the last twelve errors of every CV (Granger 1969)?
+/// The controller answers to these, so that its moves say nothing more of a disturbance, whatever its shape.
+/// The Lagrange multiplier statistic of the last six moves of each input behind its dead time, with the
+/// covariance of White (1980), since the size of a disturbance changes, over the value that chance exceeds in
+/// 1 of 100 records. An absolute test: what no hypothesis explains raises it above 1.
 double input_dependence(const Study& study, const AssessedLoop& loop, const ChannelErrorFit& fit,
                         Eigen::Index cv);
 

@@ -88,10 +88,11 @@ std::vector<bool> counted_samples(const AssessedLoop& loop) {
 }
 
 /// The channel that the verdict would repair: that of the mismatch that the first method names, or else
-/// `likelihood`, or else the first one that they name at the dearest CV. It is identified again where the
-/// errors that the model has beside it are known by their size.
+/// `likelihood`, or else the first one that they name at the dearest CV, or else the likeliest one. It is
+/// identified again where the errors that the model has beside it are known by their size.
 std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const AssessedLoop& loop,
-                                       const RecordFrame& frame) {
+                                       const RecordFrame& frame,
+                                       const std::optional<NamedMismatch>& likeliest) {
   const Study& study = assessment.study;
   const OperatingPoint& point = frame.basis.point;
   const Eigen::Index dearest = assessment.verdict.named_cv();
@@ -99,14 +100,14 @@ std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const
   for (const AssessmentRecord* const said : {&assessment.said.front(), &assessment.odds})
     if (channel_to_repair(*said) && (answer == nullptr || !answer->named_mismatch()))
       answer = said;
-  if (answer == nullptr)
-    return std::nullopt;
-  const std::optional<NamedMismatch> named = answer->named_mismatch();
   const auto identified = [&](const Channel& channel, const std::optional<MismatchParameter>& only) {
     return frame.model_error > 0.0 ? fitted_repair(study, point, assessment.loop, channel, only,
                                                    frame.model_error, assessment.verdict.model.since)
                                    : identified_channel(study, point, loop, channel, only);
   };
+  if (answer == nullptr)
+    return likeliest ? std::optional(identified(likeliest->channel, likeliest->parameter)) : std::nullopt;
+  const std::optional<NamedMismatch> named = answer->named_mismatch();
   for (Eigen::Index mv = 0; named && named->channel.cv != dearest && mv < study.mv_count(); ++mv)
     if (answer->names({dearest, mv}))
       return identified({dearest, mv}, {});
@@ -169,7 +170,7 @@ void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictE
   const std::vector<bool> counted = counted_samples(loop);
   try {
     std::optional<RepairedChannel> named;
-    if (const auto repair = repair_of(assessment, loop, frame)) {
+    if (const auto repair = repair_of(assessment, loop, frame, evidence.likeliest)) {
       evidence.mismatch = mismatch_of(*repair);
       assessment.repair = promised_repair(study, point, loop, *repair, frame.factory, counted);
       assessment.information =
@@ -556,6 +557,7 @@ void add_sources(const RecordFrame& frame, RecordAssessment& assessment, Verdict
         with_alternatives(evidence.weights, alternatives, assessment.trial ? assessment.trial->fit : kNaN);
     evidence.weights = weights.of;
     evidence.drift = weights.drift;
+    evidence.likeliest = alternatives.named;
     evidence.valve_mv = alternatives.valve_mv;
     evidence.sensor_cv = alternatives.sensor_cv;
     if (!frame.late.any()) {

@@ -147,7 +147,8 @@ struct VerdictEvidence {
   double drift = 0.0;  ///< SourceWeights::drift, of `sensor_cv`
   /// Where `sensor_cv` shows one value that chance does not make: then its sensor has all of the weights.
   std::optional<Standstill> stuck = {};
-  std::optional<NamedMismatch> mismatch = {};  ///< what is wrong with the model
+  std::optional<NamedMismatch> mismatch = {};   ///< what is wrong with the model
+  std::optional<NamedMismatch> likeliest = {};  ///< where no method names a mismatch; its size is not known
   Eigen::Index valve_mv = -1, sensor_cv = -1;
   std::vector<Eigen::Index> late_cvs = {};  ///< of data; empty: all CVs
   double late = 0.0;  ///< samples by which they are late against the inputs, below 0: early

@@ -175,30 +175,28 @@ double fit_threshold(const RecordRange& records, std::size_t method) {
 SourceWeights with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
                                 double most_fit) {
   constexpr double kPrior = 0.1, kMostly = 0.8;
-  const double usual = std::max(alternatives.mismatch, alternatives.disturbance);
+  /// What the likelihood holds for impossible is as probable as this: it takes the noise of the record for an
+  /// autoregression of order 1 that never changes.
+  constexpr double kDoubt = 0.01;
   SourceWeights found;
   OfSources& all = found.of;
-  const double most = std::max({usual, alternatives.valve, alternatives.sensor, alternatives.data});
+  const double most = std::max({alternatives.mismatch, alternatives.disturbance, alternatives.valve,
+                                alternatives.sensor, alternatives.data});
   const auto share = [most](double likelihood) { return std::exp(likelihood - most); };
+  const double mismatch = weights[RecordSource::mismatch], both = weights[RecordSource::both],
+               disturbance = weights[RecordSource::disturbance],
+               sum = std::max(mismatch + both + disturbance, 1e-300),
+               wrong_model = std::max((mismatch + both) / sum, kDoubt) * share(alternatives.mismatch),
+               alone = mismatch + both > 0.0 ? mismatch / (mismatch + both) : 1.0;
+  all[RecordSource::mismatch] = alone * wrong_model;
+  all[RecordSource::both] = (1.0 - alone) * wrong_model;
+  all[RecordSource::disturbance] = std::max(disturbance / sum, kDoubt) * share(alternatives.disturbance);
   all[RecordSource::valve] = kPrior * share(alternatives.valve);
   all[RecordSource::sensor] = 2.0 * kPrior * share(alternatives.sensor);  // its two causes, until below
   all[RecordSource::data] = kPrior * share(alternatives.data);
-  OfSources told = weights;
-  double sum = 0.0;
-  constexpr RecordSource kUsualSources[] = {RecordSource::mismatch, RecordSource::disturbance,
-                                            RecordSource::both, RecordSource::unknown};
-  for (const RecordSource source : kUsualSources)
-    sum += told[source];
-  if (!(sum > 0.0)) {
-    sum = 1.0;
-    told[alternatives.mismatch > alternatives.disturbance ? RecordSource::mismatch
-                                                          : RecordSource::disturbance] = 1.0;
-  }
-  for (const RecordSource source : kUsualSources)
-    all[source] = share(usual) * told[source] / sum;
   const auto best =
       static_cast<std::size_t>(std::max_element(all.each.begin(), all.each.end()) - all.each.begin());
-  if (alternatives.fit.each[best] > most_fit) {
+  if (alternatives.fit.each[best] > std::fmax(most_fit, 1.0)) {
     all[RecordSource::unknown] += kMostly * all.each[best];
     all.each[best] *= 1.0 - kMostly;
   }

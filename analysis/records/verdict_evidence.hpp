@@ -47,10 +47,10 @@ struct SourceWeights {
   double drift = 0.0;
 };
 
-/// The weights where further hypotheses count: valve, drift and data by their likelihood against the better
-/// one of mismatch and disturbance, a tenth as probable before, a drift by either of its causes; mismatch,
-/// disturbance and both share the rest as they did. Where the most probable one leaves more than `most_fit`
-/// of RecordAlternatives::fit, most of its weight goes to none of these.
+/// The weights where further hypotheses count, each by its likelihood (RecordAlternatives): mismatch and
+/// both, and disturbance, as probable before as `weights` has them, at least 1 in 100; valve, drift and data
+/// a tenth as probable, a drift by either of its causes. Where the most probable one leaves more than
+/// `most_fit` of RecordAlternatives::fit, and more than 1, most of its weight goes to none of these.
 SourceWeights with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
                                 double most_fit);
 
