@@ -123,7 +123,7 @@ MethodOptionTable option_table(std::vector<OptionKey> (*keys)(Options&), std::st
 /// A method that this program has.
 struct AssessmentMethodInfo : MethodDescription {
   using Make = std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext& context)>;
-  /// A variant of the method without one of its parts, NAME:END.
+  /// A variant of the method, NAME:END: without one of its parts, or with a flaw repaired.
   struct Reduced {
     std::string end, title;
     Make make;

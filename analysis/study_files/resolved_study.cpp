@@ -24,7 +24,8 @@ constexpr std::array kLaterKeys{"diagnosis.impact",           "other.valve_start
                                 "other.weights.friction",     "record.sampling",
                                 "record.exception",           "world.valve_curvature",
                                 "world.background.swell",     "assessment.likelihood.judged",
-                                "world.repair_screen",        "assessment.lasso.penalty"};
+                                "world.repair_screen",        "assessment.lasso.penalty",
+                                "assessment.yu-qin.limits"};
 
 TomlDraft resolved_draft(const Study& study) {
   TomlDraft draft(key_names(study_file_keys("")));

@@ -76,8 +76,12 @@ VariabilityDirection judge_direction(double mu, const Eigen::VectorXd& p,
   // Where nothing moves, only rounding errors would be correlated.
   direction.f_monitored =
       mu > 0.0 ? autocorrelation_factor(monitored.transpose() * direction.p, options.largest_lag) : 1.0;
-  direction.limits = variance_ratio_limits(direction.mu, {benchmark.cols(), direction.f_benchmark},
-                                           {monitored.cols(), direction.f_monitored}, options.confidence);
+  const VarianceSample of_benchmark{benchmark.cols(), direction.f_benchmark};
+  const VarianceSample of_monitored{monitored.cols(), direction.f_monitored};
+  direction.limits = options.limits == VariabilityLimits::published
+                         ? variance_ratio_limits(direction.mu, of_benchmark, of_monitored, options.confidence)
+                         : largest_root_limits(direction.mu, of_benchmark, of_monitored, options.confidence,
+                                               benchmark.rows());
   direction.change = change_of(direction.limits);
   return direction;
 }

@@ -11,6 +11,12 @@
 
 namespace mpm {
 
+/// Limits of the generalised eigenvalues.
+enum class VariabilityLimits : std::int8_t {
+  published = 0,     ///< of one direction that is chosen beforehand (`variance_ratio_limits`)
+  largest_root = 1,  ///< of all directions at once (`largest_root_limits`)
+};
+
 /// Options of `compare_variability`.
 struct VariabilityOptions {
   /// Of the limits of each eigenvalue (2.10), (2.11) and of the angles (2.14). The thesis takes 0.95.
@@ -18,6 +24,9 @@ struct VariabilityOptions {
   /// Largest lag of the sum (2.9); 0: all, as the thesis prints it. All lags overstate the sum and so widen
   /// the limits (`autocorrelation_factor`): a change is called significant too rarely, not too often.
   Eigen::Index largest_lag = 0;
+  /// The eigenvectors are the directions in which the two records differ most. With the published limits,
+  /// records of the same law therefore differ too often, and so do the CVs near these directions.
+  VariabilityLimits limits = VariabilityLimits::published;
 
   /// @throws InputError unless 0 < confidence < 1 and largest_lag >= 0
   void validate() const;
@@ -40,7 +49,7 @@ struct VariabilityDirection {
   Eigen::VectorXd p;          ///< ny; unit length
   double f_benchmark = kNaN;  ///< f_I of (2.9)
   double f_monitored = kNaN;  ///< f_II of (2.9)
-  Interval limits;  ///< LL (2.11), UL (2.10); the latter is +infinity for records that are too short
+  Interval limits;  ///< of mu (VariabilityLimits); without a finite end for records that are too short
   VariabilityChange change = VariabilityChange::none;
 };
 
@@ -71,7 +80,8 @@ struct VariabilityComparison {
 ///   I_v = det cov(e_II) / det cov(e_I)       (2.7)
 ///   cov(e_II) p = mu cov(e_I) p              (2.8)
 ///
-/// with limits of each mu from the autocorrelation of the errors along p (2.9 to 2.11), and the CVs near to
+/// with limits of each mu from the autocorrelation of the errors along p (2.9 to 2.11; or those of
+/// VariabilityLimits::largest_root), and the CVs near to
 /// the subspaces of those p whose mu is significantly above or below 1 (2.12 to 2.14; (2.13) is printed with
 /// P_w instead of P_b).
 ///

@@ -6,11 +6,23 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/autocorrelation.hpp"
+#include "analysis/statistics/largest_root.hpp"
 #include "analysis/statistics/signal_check.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
+namespace {
+
+void require_variances(double mu, const VarianceSample& benchmark, const VarianceSample& monitored) {
+  if (!(mu >= 0.0))
+    throw InputError("ratio of variances", fmt::format("{}", mu), "0 or more");
+  for (const VarianceSample& sample : {benchmark, monitored})
+    if (sample.samples < 2)
+      throw InputError("samples of a variance", fmt::format("{}", sample.samples), "2 or more");
+}
+
+}  // namespace
 
 double autocorrelation_factor(const Eigen::Ref<const Eigen::VectorXd>& signal, Eigen::Index largest_lag) {
   require_signal("signal of an autocorrelation factor", signal, 2);
@@ -28,11 +40,7 @@ double autocorrelation_factor(const Eigen::Ref<const Eigen::VectorXd>& signal, E
 
 Interval variance_ratio_limits(double mu, const VarianceSample& benchmark, const VarianceSample& monitored,
                                double confidence) {
-  if (!(mu >= 0.0))
-    throw InputError("ratio of variances", fmt::format("{}", mu), "0 or more");
-  for (const VarianceSample& sample : {benchmark, monitored})
-    if (sample.samples < 2)
-      throw InputError("samples of a variance", fmt::format("{}", sample.samples), "2 or more");
+  require_variances(mu, benchmark, monitored);
   const auto variance = [](const VarianceSample& sample) {
     return sample.autocorrelation_factor / static_cast<double>(sample.samples - 1);
   };
@@ -40,6 +48,20 @@ Interval variance_ratio_limits(double mu, const VarianceSample& benchmark, const
       two_sided_normal_quantile(confidence) * std::sqrt(2.0 * (variance(benchmark) + variance(monitored)));
   const double upper = half_width < 1.0 ? mu / (1.0 - half_width) : kInfinity;
   return {mu / (1.0 + half_width), upper};
+}
+
+Interval largest_root_limits(double mu, const VarianceSample& benchmark, const VarianceSample& monitored,
+                             double confidence, Eigen::Index variables) {
+  require_confidence(confidence);
+  require_variances(mu, benchmark, monitored);
+  const auto freedom = [](const VarianceSample& sample) {
+    return static_cast<double>(sample.samples - 1) / sample.autocorrelation_factor;
+  };
+  const double probability = 0.5 * (1.0 - confidence);
+  const double upper =
+      largest_root_upper_quantile(probability, variables, freedom(benchmark), freedom(monitored));
+  return {mu / largest_root_upper_quantile(probability, variables, freedom(monitored), freedom(benchmark)),
+          mu > 0.0 ? mu * upper : 0.0};
 }
 
 }  // namespace mpm

@@ -41,4 +41,17 @@ struct VarianceSample {
 Interval variance_ratio_limits(double mu, const VarianceSample& benchmark, const VarianceSample& monitored,
                                double confidence);
 
+/// Limits of the ratio mu that hold at once for every direction in which `variables` signals may be added up,
+/// and so for one that the data choose (Roy 1953, the union-intersection principle):
+///
+///   mu/l(nu_II, nu_I) <= true ratio <= mu l(nu_I, nu_II),   nu = (n - 1)/f
+///
+/// with l(b, a) the quantile of the largest root of two covariance matrices with b and a degrees of freedom
+/// that (1 - confidence)/2 exceed (`largest_root_upper_quantile`). nu is the number of independent values
+/// whose sample variance scatters as that of the n does. Where a record is too short for its autocorrelation,
+/// with nu_I or nu_II below the number of variables, the limit is 0 or +infinity.
+/// @throws InputError as `variance_ratio_limits`, and for no variable
+Interval largest_root_limits(double mu, const VarianceSample& benchmark, const VarianceSample& monitored,
+                             double confidence, Eigen::Index variables);
+
 }  // namespace mpm

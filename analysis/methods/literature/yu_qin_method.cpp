@@ -23,16 +23,22 @@ struct YuQinOptions {
 };
 
 OptionKeys keys(YuQinOptions& options) {
-  return {key::number("confidence", options.comparison.confidence, NumberRule::inside(0, 1),
-                      "confidence of the limits of eigenvalues and angles (2.4.1)"),
-          key::whole("largest_lag", options.comparison.largest_lag, 0, 1'000'000,
-                     "largest lag of the sum over squared autocorrelations (2.9), samples; 0: all lags, "
-                     "because the thesis prints the sum in this form. This overstates the sum, so changes "
-                     "are called significant too rarely (`docs/methods.md`)"),
-          key::whole("first_sample", options.first_sample, 0, 1'000'000,
-                     "sample at which the compared periods begin. 0: the whole record, as for every other "
-                     "method. A loop whose plant differs from its model starts with a transient, which "
-                     "otherwise dominates the variances")};
+  return {
+      key::number("confidence", options.comparison.confidence, NumberRule::inside(0, 1),
+                  "confidence of the limits of eigenvalues and angles (2.4.1)"),
+      key::whole("largest_lag", options.comparison.largest_lag, 0, 1'000'000,
+                 "largest lag of the sum over squared autocorrelations (2.9), samples; 0: all lags, "
+                 "because the thesis prints the sum in this form. This overstates the sum, so changes "
+                 "are called significant too rarely (`docs/methods.md`)"),
+      key::choice("limits", options.comparison.limits, {"published", "largest-root"},
+                  "limits of the ratios of variances. `\"published\"`: (2.10), (2.11), for a direction "
+                  "chosen beforehand, although the data choose it. `\"largest-root\"`: for all directions "
+                  "at once (`docs/methods_literature.md`); the method `yu-qin:largest-root` has them in any "
+                  "case"),
+      key::whole("first_sample", options.first_sample, 0, 1'000'000,
+                 "sample at which the compared periods begin. 0: the whole record, as for every other "
+                 "method. A loop whose plant differs from its model starts with a transient, which "
+                 "otherwise dominates the variances")};
 }
 
 /// Control errors of `cvs`, one row each, from sample `first` on.
@@ -107,6 +113,13 @@ class YuQin final : public AssessmentMethod {
   const AssessedLoop& benchmark_;
 };
 
+/// Limits that hold for the directions that the data choose.
+std::unique_ptr<AssessmentMethod> with_limits_of_largest_root(const AssessmentContext& context) {
+  auto options = context.study.assessment.of<YuQinOptions>();
+  options.comparison.limits = VariabilityLimits::largest_root;
+  return std::make_unique<YuQin>(options, context);
+}
+
 }  // namespace
 
 AssessmentMethodInfo yu_qin_method() {
@@ -133,7 +146,8 @@ AssessmentMethodInfo yu_qin_method() {
       // A loop is flagged by the lower one of the two ends of an interval.
       [](const MethodOptions& options) {
         return 0.5 * (1.0 - options.of<YuQinOptions>().comparison.confidence);
-      }};
+      },
+      {{"largest-root", "limits of all directions at once", with_limits_of_largest_root}}};
 }
 
 }  // namespace mpm

@@ -215,6 +215,7 @@ TEST_CASE("false alarms are marked when their interval does not hold what the me
 
   Study other = study();
   CHECK(testing::form_of(other, "yu-qin")->method().stated_false_alarms == Approx(0.025));
+  CHECK(testing::form_of(other, "yu-qin:largest-root")->method().stated_false_alarms == Approx(0.025));
   CHECK(testing::form_of(other, "badwe2009")->method().stated_false_alarms == Approx(0.05));
   other.assessment.of<Badwe2009Options>().confidence = 0.99;
   CHECK(testing::form_of(other, "badwe2009")->method().stated_false_alarms == Approx(0.01));

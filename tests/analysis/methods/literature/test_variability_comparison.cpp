@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -9,11 +10,13 @@
 #include "analysis/methods/literature/variability_comparison.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
+#include "tests/analysis/exact_interval.hpp"
 #include "tests/analysis/signals.hpp"
 
 using mpm::compare_variability;
 using mpm::VariabilityChange;
 using mpm::VariabilityComparison;
+using mpm::VariabilityLimits;
 using mpm::VariabilityOptions;
 using mpm::VariabilityStatus;
 
@@ -74,6 +77,32 @@ Eigen::VectorXd ratios(const VariabilityComparison& comparison) {
   for (Eigen::Index i = 0; i < mu.size(); ++i)
     mu(i) = comparison.directions[static_cast<std::size_t>(i)].mu;
   return mu;
+}
+
+/// Of this many pairs of independent autoregressions of 400 samples, how many are called worse, and in how
+/// many some CV is named; `factor` scales the variance of the first CV of the second record.
+struct CalledWorse {
+  int pairs = 0, loops = 0, cvs = 0;
+};
+
+CalledWorse called_worse(VariabilityLimits limits, Eigen::Index ny, double a, double factor, int pairs) {
+  VariabilityOptions options;
+  options.limits = limits;
+  CalledWorse called{.pairs = pairs};
+  for (int pair = 0; pair < pairs; ++pair) {
+    Eigen::MatrixXd records[2];
+    for (int i = 0; i < 2; ++i) {
+      records[i].resize(ny, 400);
+      for (Eigen::Index cv = 0; cv < ny; ++cv)
+        records[i].row(cv) = mpm::testing::settled_autoregression(
+            400, a, 2'000'000 + static_cast<std::uint64_t>(20 * pair + 10 * i + cv));
+    }
+    records[1].row(0) *= std::sqrt(factor);
+    const VariabilityComparison found = compare_variability(records[0], records[1], options);
+    called.loops += found.directions.front().change == VariabilityChange::worse ? 1 : 0;
+    called.cvs += above(found.cos_worse, found.beta).empty() ? 0 : 1;
+  }
+  return called;
 }
 
 }  // namespace
@@ -223,6 +252,49 @@ TEST_CASE("variability: errors in very different units are not singular") {
   benchmark.row(0) *= 1e-9;
   benchmark.row(1) *= 1e9;
   CHECK(compare_variability(benchmark, 2.0 * benchmark).i_v == Approx(64.0));
+}
+
+TEST_CASE("variability: the data choose the directions, which the limits of the largest root allow for") {
+  const double allowed = 0.5 * (1.0 - VariabilityOptions{}.confidence);  // by one of the two limits
+  const auto least = [](int called, const CalledWorse& of) {
+    return mpm::testing::clopper_pearson_interval(called, of.pairs, 0.998).lower;
+  };
+  for (const Eigen::Index ny : {3, 7})
+    for (const double a : {0.0, 0.8}) {
+      INFO(ny << " CVs, a = " << a);
+      const CalledWorse published = called_worse(VariabilityLimits::published, ny, a, 1.0, 150);
+      CHECK(least(published.loops, published) > 2.0 * allowed);
+      const CalledWorse repaired = called_worse(VariabilityLimits::largest_root, ny, a, 1.0, 300);
+      CHECK(least(repaired.loops, repaired) <= allowed);
+      CHECK(least(repaired.cvs, repaired) <= allowed);
+    }
+  // A variance that doubles is found nevertheless.
+  for (const auto& [ny, a] : {std::pair<Eigen::Index, double>{1, 0.8}, {3, 0.5}, {7, 0.0}}) {
+    const CalledWorse doubled = called_worse(VariabilityLimits::largest_root, ny, a, 2.0, 100);
+    INFO(ny << " CVs, a = " << a << ": " << doubled.loops);
+    CHECK(least(doubled.loops, doubled) > 0.5);
+    CHECK(least(doubled.cvs, doubled) > 0.5);
+  }
+}
+
+TEST_CASE("variability: limits of the largest root are the inverse ones for exchanged periods") {
+  VariabilityOptions options;
+  options.limits = VariabilityLimits::largest_root;
+  const Eigen::MatrixXd benchmark = random_errors(3, 250, 12);
+  const Eigen::MatrixXd monitored = random_errors(3, 400, 13);
+  const auto there = compare_variability(benchmark, monitored, options).directions;
+  const auto back = compare_variability(monitored, benchmark, options).directions;
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(there[i].limits.lower == Approx(1.0 / back[2 - i].limits.upper).epsilon(1e-6));
+    CHECK(there[i].limits.upper == Approx(1.0 / back[2 - i].limits.lower).epsilon(1e-6));
+  }
+  // Four samples of three CVs bound nothing.
+  Eigen::MatrixXd few(3, 4);
+  few << 0, 1, 2, 3, 0, 1, 4, 9, 0, 1, 0, 1;
+  for (const auto& direction : compare_variability(few, 100.0 * few, options).directions) {
+    CHECK(direction.limits.lower == 0.0);
+    CHECK(direction.limits.upper == mpm::kInfinity);
+  }
 }
 
 TEST_CASE("variability refuses what cannot be meant") {

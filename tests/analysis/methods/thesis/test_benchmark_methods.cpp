@@ -127,6 +127,21 @@ TEST_CASE(
   CHECK(passed_over.score == 0.0);
 }
 
+TEST_CASE("yu-qin:largest-root: the method with the limits of the largest root") {
+  const AssessedLoop benchmark = made_up_loop(400, 1);
+  AssessedLoop loop = made_up_loop(400, 2);
+  loop.y.row(1) = loop.y_set.row(1) + 1.5 * (loop.y - loop.y_set).row(1);
+  Setting setting(benchmark);
+  const Assessment published = setting.assess("yu-qin", loop);
+  const Assessment repaired = setting.assess("yu-qin:largest-root", loop);
+  CHECK(repaired.flagged);
+  CHECK(repaired.worst_cv() == 1);
+  CHECK(repaired.number("mu_max") == published.number("mu_max"));
+  CHECK(repaired.score < published.score);
+  setting.set("assessment.yu-qin.limits", "\"largest-root\"");
+  CHECK(setting.assess("yu-qin", loop).score == repaired.score);
+}
+
 TEST_CASE("yu-qin: when every direction is worse, the CV of the worst comes first") {
   const AssessedLoop benchmark = made_up_loop(400, 9);
   AssessedLoop loop = benchmark;
