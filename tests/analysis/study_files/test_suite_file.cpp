@@ -140,6 +140,9 @@ TEST_CASE("every cell of the standard suite has worlds, and no cell of the suite
     for (const SuiteCell& cell : find_suite(name).cells) {
       REQUIRE(cell.study.world);
       CHECK(cell.study.world->count >= 8);
+      REQUIRE(cell.study.calibration);
+      CHECK(cell.study.calibration->worlds >= 40);  // a world for each loop: their scores are exchangeable
+      CHECK(cell.study.calibration->healthy == cell.study.calibration->worlds);
       CHECK(cell.study.diagnosis.unstable == UnstableLoops::exclude);
     }
   for (const SuiteCell& cell : find_suite("exact").cells)
