@@ -15,6 +15,7 @@
 #include "analysis/statistics/washout.hpp"
 #include "base/non_finite.hpp"
 #include "plants/analyser.hpp"
+#include "scenarios/loop/record_rows.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "scenarios/random/random_stream.hpp"
 
@@ -29,12 +30,23 @@ Eigen::MatrixXd errors_of(const Study& study, const AssessedLoop& whole) {
   return from_washout(study, whole.y - whole.y_sim);
 }
 
+/// Each row `samples` later, along straight lines.
+Eigen::MatrixXd later_rows(const Eigen::MatrixXd& y, double samples) {
+  if (samples == 0.0)
+    return y;
+  Eigen::MatrixXd later(y.rows(), y.cols());
+  for (Eigen::Index row = 0; row < y.rows(); ++row)
+    later.row(row) = rows_of_line({OutputSampling::snapshot, -samples}, y.row(row));
+  return later;
+}
+
 }  // namespace
 
 CounterfactualLoop::CounterfactualLoop(const AssessmentContext& context)
     : study_(context.study),
       learnt_(learnt_model(context)),
       plant_(learnt_ ? learnt_->plant() : context.study.plant.G),
+      late_(learnt_ ? learnt_->late() / context.study.controller.sample_time : 0.0),
       factory_(context.factory),
       y_set_(setpoints(context.study)),
       dither_(dither(context.study)),
@@ -52,15 +64,9 @@ Eigen::VectorXd CounterfactualLoop::noise_of_benchmark(const AssessmentContext& 
   const Eigen::MatrixXd y_basis = gaps_closed(recorded_basis(context));
   const Study& of_basis = context.study_of_benchmark();
   const SetpointTrajectories centres = variance_centres(of_basis, 0, y_basis.cols());
-  const Eigen::MatrixXd quiet = Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols());
   const Trajectory nominal =
-      run_closed_loop(of_basis, plant_,
-                      {.d = as_taken(of_basis.controller.md_analysers, context.basis.trajectory.d),
-                       .noise = quiet,
-                       .y_d = quiet,
-                       .y_set = setpoints(of_basis),
-                       .dither = dither_},
-                      factory_);
+      simulated(of_basis, as_taken(of_basis.controller.md_analysers, context.basis.trajectory.d),
+                setpoints(of_basis), Eigen::MatrixXd::Zero(y_basis.rows(), y_basis.cols()));
   return nominal.status == ControlStatus::ok
              ? noise_variance(variances(y_basis, centres), variances(nominal.y, centres))
              : Eigen::VectorXd();
@@ -150,7 +156,7 @@ const std::vector<Eigen::MatrixXd>& CounterfactualLoop::outputs_under_noise(cons
   drawn_d_ = d;
   drawn_y_.clear();
   for (int draw = 0; draw < kNoiseDraws; ++draw) {
-    Trajectory nominal = simulated(d, drawn_noise_of(d.cols(), draw));
+    Trajectory nominal = simulated(study_, d, y_set_, drawn_noise_of(d.cols(), draw));
     if (nominal.status != ControlStatus::ok) {
       drawn_y_.clear();
       break;
@@ -195,15 +201,22 @@ Eigen::VectorXd CounterfactualLoop::noise_variance(const Eigen::VectorXd& noisy,
   return Eigen::VectorXd::Zero(noisy.size());
 }
 
-/// The loop of the controller on its model under the disturbances `d`, with `errors` added to the outputs.
-Trajectory CounterfactualLoop::simulated(const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors) const {
-  return run_closed_loop(study_, plant_,
-                         {.d = d,
-                          .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
-                          .y_d = errors,
-                          .y_set = y_set_,
-                          .dither = dither_},
-                         factory_);
+/// The loop of the controller on its model under the disturbances `d`, with `errors` added to the outputs;
+/// they and the outputs are as in rows of the record.
+Trajectory CounterfactualLoop::simulated(const Study& study, const Eigen::MatrixXd& d,
+                                         const Eigen::MatrixXd& y_set, const Eigen::MatrixXd& errors) const {
+  // Straight lines between samples would take a half of their noise away.
+  const Eigen::MatrixXd y_d = later_rows(errors, -std::trunc(late_));
+  Trajectory loop = run_closed_loop(study, plant_,
+                                    {.d = d,
+                                     .noise = Eigen::MatrixXd::Zero(errors.rows(), errors.cols()),
+                                     .y_d = y_d,
+                                     .y_set = y_set,
+                                     .dither = dither_},
+                                    factory_);
+  if (late_ != 0.0 && loop.status == ControlStatus::ok)
+    loop.y = later_rows(loop.y - y_d, late_) + errors;
+  return loop;
 }
 
 /// The same without errors. The last one is kept: windows of a record ask for the same, and so do all records
@@ -211,7 +224,7 @@ Trajectory CounterfactualLoop::simulated(const Eigen::MatrixXd& d, const Eigen::
 const Trajectory& CounterfactualLoop::undisturbed(const AssessedLoop& whole) {
   if (nominal_.y.cols() != whole.samples() || nominal_d_ != whole.d) {
     nominal_d_ = whole.d;
-    nominal_ = simulated(whole.d, Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()));
+    nominal_ = simulated(study_, whole.d, y_set_, Eigen::MatrixXd::Zero(whole.y.rows(), whole.y.cols()));
   }
   return nominal_;
 }
@@ -225,7 +238,7 @@ Eigen::MatrixXd CounterfactualLoop::disturbed_output(const AssessedLoop& whole, 
     errors.row(cv) = drawn_noise_of(errors.cols(), 0).row(cv);
   else
     errors.row(cv).setZero();
-  Trajectory nominal = simulated(whole.d, errors);
+  Trajectory nominal = simulated(study_, whole.d, y_set_, errors);
   return nominal.status == ControlStatus::ok ? std::move(nominal.y) : Eigen::MatrixXd();
 }
 

@@ -42,7 +42,10 @@ struct CounterfactualOptions {
 /// reaches them again, for which no linear S0 exists: with the errors of all CVs added, the loop returns y. y
 /// contains noise and y0 does not; v is what noise adds to the variance, taken from the basis case y_b of the
 /// same controller (NoiseVariance has other choices). Gaps of e are filled by linear interpolation. For
-/// windows, the record is simulated once from its start.
+/// windows, the record is simulated once from its start. Where the rows of the record are late by l against
+/// the inputs (LearntModel::late()), the loop runs without them being so, and its outputs are compared as the
+/// rows of such a record: with x the output of G0 alone, y0_diag(k) = x(k - l) + e(k), where e has acted in
+/// the loop l earlier, in whole samples.
 ///
 /// v is of one realisation of the noise and of the excitation of the benchmark. A level that is free in its
 /// range has another variance in each record, and noise makes it smaller as often as larger. So, where errors
@@ -95,7 +98,8 @@ class CounterfactualLoop {
   };
 
   Eigen::VectorXd noise_of_benchmark(const AssessmentContext& context) const;
-  Trajectory simulated(const Eigen::MatrixXd& d, const Eigen::MatrixXd& errors) const;
+  Trajectory simulated(const Study& study, const Eigen::MatrixXd& d, const Eigen::MatrixXd& y_set,
+                       const Eigen::MatrixXd& errors) const;
   const Trajectory& undisturbed(const AssessedLoop& whole);
   Eigen::MatrixXd disturbed_output(const AssessedLoop& whole, Eigen::Index cv, bool is_drawn) const;
   Eigen::VectorXd noise_variance(const Eigen::VectorXd& noisy, const Eigen::VectorXd& quiet) const;
@@ -111,6 +115,7 @@ class CounterfactualLoop {
   const Study& study_;
   std::shared_ptr<const LearntModel> learnt_;
   TransferMatrix plant_;  ///< G0, or the plant as the benchmark shows it
+  double late_;           ///< by how many samples rows of CVs are late; below 0: early
   QpSolverFactory factory_;
   Eigen::MatrixXd y_set_, dither_;
   Eigen::MatrixXd nominal_d_;             ///< under which `nominal_` was simulated

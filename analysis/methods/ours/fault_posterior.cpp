@@ -215,7 +215,8 @@ bool draws_known_faults(const Study& study) {
 class FaultKnowledge {
  public:
   FaultKnowledge(const AssessmentContext& context, FaultPriors priors)
-      : models_(learnt_models(context, priors)),
+      : learnt_(priors == FaultPriors::study ? nullptr : learnt_model(context)),
+        models_(learnt_models(context, priors)),
         priors_(fault_priors(
             context.study, priors, context.study.assessment.of<LikelihoodOptions>().fault_probability,
             deviations(models_, context.correction != nullptr), context.correction != nullptr)) {
@@ -227,8 +228,8 @@ class FaultKnowledge {
           std::max(deviation_of_steps(d.row(md)), kUnseen * (d.row(md).maxCoeff() - d.row(md).minCoeff()));
     if (priors == FaultPriors::study && !noise_is_known(study))
       priors_.noise_freedom = std::min(priors_.noise_freedom, kUnknownNoise);
-    if (const auto learnt = learnt_model(context); priors != FaultPriors::study && learnt)
-      discount_false_faults(context, *learnt);
+    if (learnt_)
+      discount_false_faults(context, *learnt_);
     for_scores_ = priors == FaultPriors::study ? of_equal_kinds(study, priors_) : priors_;
     if (priors == FaultPriors::study && !draws_known_faults(study))
       priors_ = for_scores_;
@@ -244,6 +245,10 @@ class FaultKnowledge {
   const FaultPriorSet& priors() const { return priors_; }
   const FaultPriorSet& for_scores() const { return for_scores_; }
   const CvLikelihood& of(std::size_t cv) const { return *likelihoods_[cv]; }
+  /// y - y_sim of the CV, at the samples of its model.
+  Eigen::RowVectorXd errors(const AssessedLoop& loop, Eigen::Index cv) const {
+    return learnt_ ? learnt_->errors(loop, cv) : errors_in_window(loop, cv);
+  }
   /// Noise of an MD in the benchmark, or what of it would not be seen.
   double md_noise(Eigen::Index md) const { return md_noises_(md); }
 
@@ -270,7 +275,7 @@ class FaultKnowledge {
       for (const bool first : {true, false}) {
         const auto learns = [&](Eigen::Index k) { return (k < middle) == first; };
         const std::optional<ModelErrors> half = learnt.of_part(study, benchmark, cv, learns);
-        Eigen::RowVectorXd other = errors_in_window(benchmark, cv);
+        Eigen::RowVectorXd other = learnt.errors(benchmark, cv);
         for (Eigen::Index k = 0; k < other.size(); ++k)
           if (learns(k))
             other(k) = kNaN;
@@ -295,6 +300,7 @@ class FaultKnowledge {
 
   static constexpr double kUnseen = 1e-3;  ///< noise of an MD, over what it moves
 
+  std::shared_ptr<const LearntModel> learnt_;
   std::vector<ModelErrors> models_;
   Eigen::VectorXd md_noises_;
   FaultPriorSet priors_, for_scores_;
@@ -323,8 +329,7 @@ class FaultPosterior final : public AssessmentMethod {
       const auto cv = static_cast<Eigen::Index>(i);
       // A window is the record up to its end in which nothing is observed before it: what the inputs did
       // before is known, and a disturbance may have been there.
-      Eigen::RowVectorXd e = Eigen::RowVectorXd::Constant(loop.first + loop.samples(), kNaN);
-      e.tail(loop.samples()) = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
+      Eigen::RowVectorXd e = known_->errors(loop, cv).head(loop.first + loop.samples());
       if (e.array().isNaN().all())
         return Assessment::failed("a CV has no sample");
       evidence.push_back(
@@ -419,8 +424,6 @@ class FaultPosterior final : public AssessmentMethod {
     std::size_t valve_mv = 0;  ///< the MV whose valve most likely sticks
   };
 
-  /// A valve that sticks disturbs its MV: valves are searched where a disturbance of the MV is not far behind
-  /// that of the best one.
   InputWeights input_weights(const std::vector<CvEvidence>& evidence,
                              const std::vector<Eigen::MatrixXd>& series,
                              const std::vector<WhitenedErrors>& whitened, const Eigen::MatrixXd& inputs,
@@ -430,15 +433,15 @@ class FaultPosterior final : public AssessmentMethod {
                                      known_->priors().noise_freedom);
     const std::vector<InputEvidence> of_mvs = likelihood.of_mvs(study_.mv_count());
     InputWeights found;
+    for (const InputEvidence& of_mv : of_mvs)
+      found.disturbance = log_sum(found.disturbance, log_weight(prior, of_mv.log_evidence, healthy));
+    if (!asks_valves)
+      return found;
+    const std::vector<ExplainedErrors> valves = best_sticky_valves(
+        known_->models(), whitened, inputs, initial_, study_.mv_count(), study_.controller.sample_time);
     double most = -kInfinity;
-    for (std::size_t mv = 0; mv < of_mvs.size(); ++mv) {
-      found.disturbance = log_sum(found.disturbance, log_weight(prior, of_mvs[mv].log_evidence, healthy));
-      if (!asks_valves || !(of_mvs[mv].log_evidence > -kInfinity))
-        continue;
-      const double valve =
-          weight_of(best_sticky_valve(known_->models(), whitened, inputs, initial_,
-                                      static_cast<Eigen::Index>(mv), study_.controller.sample_time),
-                    prior, evidence, series);
+    for (std::size_t mv = 0; mv < valves.size(); ++mv) {
+      const double valve = weight_of(valves[mv], prior, evidence, series);
       found.valve = log_sum(found.valve, valve);
       if (valve > most) {
         most = valve;

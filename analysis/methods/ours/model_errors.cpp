@@ -13,9 +13,9 @@
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/methods/ours/disturbance_scan.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
-#include "analysis/methods/ours/whitened_errors.hpp"
 #include "analysis/statistics/chi_squared.hpp"
 #include "base/non_finite.hpp"
+#include "scenarios/loop/record_rows.hpp"
 
 namespace mpm {
 namespace {
@@ -122,6 +122,15 @@ Eigen::VectorXd bounded_mean(const Eigen::VectorXd& mean, const Eigen::MatrixXd&
   return bounded;
 }
 
+/// y of the window, from rows that are early by some samples.
+Eigen::RowVectorXd y_at_samples(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index early) {
+  if (early == 0)
+    return loop.y.row(cv);
+  const AssessedLoop& whole = loop.from_start();
+  return rows_of({OutputSampling::snapshot, -static_cast<double>(early)}, whole.y.row(cv), whole.samples())
+      .segment(loop.first, loop.samples());
+}
+
 }  // namespace
 
 ModelErrorPrior relative_errors(const Study& study, Eigen::Index cv, double share, double bias) {
@@ -214,6 +223,14 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const BaseNoise& n
   for (Eigen::Index input = 0; input < nominal_.cols(); ++input)
     nominal_(0, input) = study.assessed_channel(cv, input);
   late_ = model_ = nominal_;
+}
+
+TransferMatrix ModelErrors::plant() const {
+  TransferMatrix plant = model_;
+  for (Eigen::Index input = 0; input < plant.cols(); ++input)
+    if (const double late = late_(0, input).dead_time() - nominal_(0, input).dead_time(); late != 0.0)
+      plant(0, input) = with_error(plant(0, input), {input, MismatchParameter::dead_time, 1.0}, -late);
+  return plant;
 }
 
 Eigen::RowVectorXd ModelErrors::correction(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
@@ -364,9 +381,7 @@ LearntModel::LearntModel(const Study& study, const Eigen::Ref<const Eigen::Vecto
                          const AssessedLoop& benchmark, double share, double bias)
     : share_(share), bias_(bias), initial_(Eigen::VectorXd::Zero(study.plant.G.cols())) {
   initial_.head(initial_u.size()) = initial_u;
-  cvs_ = errors_of(study, benchmark, 0.0);
-  if (!(gain_of_lateness(benchmark) > kSpeaksForLate))
-    return;
+  cvs_ = errors_of(study, benchmark, 0, 0.0);
   const auto evidence = [](const std::vector<ModelErrors>& cvs) {
     double sum = 0.0;
     for (const ModelErrors& cv : cvs)
@@ -375,53 +390,34 @@ LearntModel::LearntModel(const Study& study, const Eigen::Ref<const Eigen::Vecto
   };
   double most = evidence(cvs_) + kSpeaksForLate;
   for (const double samples : {-1.0, -0.5, 0.5, 1.0}) {
-    const double late = samples * study.controller.sample_time;
-    std::vector<ModelErrors> tried = errors_of(study, benchmark, late);
+    const double early = std::max(0.0, std::ceil(-samples));
+    std::vector<ModelErrors> tried = errors_of(study, benchmark, static_cast<Eigen::Index>(early),
+                                               (samples + early) * study.controller.sample_time);
     if (const double found = evidence(tried); found > most) {
       most = found;
-      late_ = late;
+      late_ = samples * study.controller.sample_time;
+      early_ = static_cast<Eigen::Index>(early);
       cvs_ = std::move(tried);
     }
   }
 }
 
-double LearntModel::gain_of_lateness(const AssessedLoop& benchmark) const {
-  const AssessedLoop& whole = benchmark.from_start();
-  const Eigen::MatrixXd inputs = model_inputs(whole);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < cvs_.size(); ++i) {
-    const ModelErrors& errors = cvs_[i];
-    const auto cv = static_cast<Eigen::Index>(i);
-    const Eigen::RowVectorXd correction = errors.correction(inputs, initial_);
-    const Eigen::MatrixXd directions = errors.directions(errors.slopes(inputs, initial_));
-    Eigen::MatrixXd series(1 + directions.rows(), directions.cols());
-    series << (errors_in_window(benchmark, cv) - correction) / errors.noise().deviation, directions;
-    const Eigen::RowVectorXd y = whole.y_sim.row(cv) + correction;
-    Eigen::RowVectorXd moves = Eigen::RowVectorXd::Zero(y.size());
-    moves.tail(y.size() - 1) = y.tail(y.size() - 1) - y.head(y.size() - 1);
-    const auto [product, squares] =
-        WhitenedErrors(errors.noise(), series, kInfinity).amplitude(moves / errors.noise().deviation);
-    sum += squares > 0.0 ? 0.5 * product * product / squares : 0.0;
-  }
-  return sum;
-}
-
 std::vector<ModelErrors> LearntModel::errors_of(const Study& study, const AssessedLoop& benchmark,
-                                                double late) const {
+                                                Eigen::Index early, double late) const {
   // Of a window the inputs before it are known, too.
   const AssessedLoop& whole = benchmark.from_start();
   std::vector<ModelErrors> cvs;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
-    cvs.emplace_back(study, cv, relative_errors(study, cv, share_, bias_), errors_in_window(benchmark, cv),
-                     model_inputs(whole), initial_, least_noise(benchmark.y_sim.row(cv)),
-                     std::optional<BaseNoise>(), late);
+    cvs.emplace_back(study, cv, relative_errors(study, cv, share_, bias_),
+                     errors_in_window(benchmark, cv, early), model_inputs(whole), initial_,
+                     least_noise(benchmark.y_sim.row(cv)), std::optional<BaseNoise>(), late);
   return cvs;
 }
 
 std::optional<ModelErrors> LearntModel::of_part(const Study& study, const AssessedLoop& benchmark,
                                                 Eigen::Index cv,
                                                 const std::function<bool(Eigen::Index)>& uses) const {
-  Eigen::RowVectorXd e = errors_in_window(benchmark, cv);
+  Eigen::RowVectorXd e = errors(benchmark, cv);
   for (Eigen::Index k = 0; k < e.size(); ++k)
     if (!uses(k))
       e(k) = kNaN;
@@ -429,10 +425,12 @@ std::optional<ModelErrors> LearntModel::of_part(const Study& study, const Assess
     return std::nullopt;
   return ModelErrors(study, cv, relative_errors(study, cv, share_, bias_), e,
                      model_inputs(benchmark.from_start()), initial_, least_noise(benchmark.y_sim.row(cv)), {},
-                     late_);
+                     late_ + static_cast<double>(early_) * study.controller.sample_time);
 }
 
 std::optional<Eigen::Index> LearntModel::rejects_exact_model() const {
+  if (late_ != 0.0)
+    return 0;
   const auto first =
       std::find_if(cvs_.begin(), cvs_.end(), [](const ModelErrors& cv) { return cv.rejects_exact_model(); });
   return first == cvs_.end() ? std::nullopt : std::optional<Eigen::Index>(first - cvs_.begin());
@@ -440,9 +438,11 @@ std::optional<Eigen::Index> LearntModel::rejects_exact_model() const {
 
 TransferMatrix LearntModel::plant() const {
   TransferMatrix plant(static_cast<Eigen::Index>(cvs_.size()), initial_.size());
-  for (Eigen::Index cv = 0; cv < plant.rows(); ++cv)
+  for (Eigen::Index cv = 0; cv < plant.rows(); ++cv) {
+    const TransferMatrix of_cv = of(cv).plant();
     for (Eigen::Index input = 0; input < plant.cols(); ++input)
-      plant(cv, input) = of(cv).model()(0, input).without_washout();
+      plant(cv, input) = of_cv(0, input).without_washout();
+  }
   return plant;
 }
 
@@ -450,8 +450,15 @@ std::shared_ptr<const AssessedLoop> LearntModel::corrected(const AssessedLoop& l
   return loop.derived.of<const AssessedLoop>("corrected by the benchmark", [&] {
     AssessedLoop whole = loop.from_start();
     whole.y_sim += explained(loop);
+    for (Eigen::Index cv = 0; early_ > 0 && cv < whole.y_sim.rows(); ++cv)
+      whole.y_sim.row(cv) = rows_of({OutputSampling::snapshot, static_cast<double>(early_)},
+                                    whole.y_sim.row(cv), whole.samples());
     return same_window(loop, std::move(whole));
   });
+}
+
+Eigen::RowVectorXd LearntModel::errors(const AssessedLoop& loop, Eigen::Index cv) const {
+  return errors_in_window(loop, cv, early_);
 }
 
 /// ny x N of the record; the samples of the window alone say what is most probable.
@@ -466,8 +473,8 @@ Eigen::MatrixXd LearntModel::explained(const AssessedLoop& loop) const {
     const Eigen::MatrixXd Z = errors.directions(errors.slopes(inputs, initial_).topRows(errors.count()));
     Eigen::MatrixXd series(1 + Z.rows(), whole.samples());
     series.row(0).setConstant(kNaN);
-    series.block(0, loop.first, 1, loop.samples()) =
-        without_outliers(loop.y.row(cv) - loop.y_sim.row(cv) - sum.block(cv, loop.first, 1, loop.samples()));
+    series.block(0, loop.first, 1, loop.samples()) = without_outliers(
+        y_at_samples(loop, cv, early_) - loop.y_sim.row(cv) - sum.block(cv, loop.first, 1, loop.samples()));
     series.bottomRows(Z.rows()) = errors.noise().deviation * Z;
     if (Z.rows() == 0 || (!series.row(0).array().isNaN()).count() < kFewestNoiseSamples)
       continue;
@@ -480,9 +487,10 @@ Eigen::MatrixXd LearntModel::explained(const AssessedLoop& loop) const {
   return sum;
 }
 
-Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv) {
+Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index early) {
   Eigen::RowVectorXd e = Eigen::RowVectorXd::Constant(loop.from_start().samples(), kNaN);
-  e.segment(loop.first, loop.samples()) = without_outliers(loop.y.row(cv) - loop.y_sim.row(cv));
+  e.segment(loop.first, loop.samples()) =
+      without_outliers(y_at_samples(loop, cv, early) - loop.y_sim.row(cv));
   return e;
 }
 

@@ -55,7 +55,8 @@ class ModelErrors {
   /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample, `inputs` (nu + nd x N)
   /// with `initial` (nu + nd) before them what moved the model. The noise is that which is `known`, or is
   /// learnt with a deviation of `least` or more. The errors are those of a model whose channels all have a
-  /// dead time that is longer by `late`. Throws InputError for fewer than kFewestNoiseSamples samples.
+  /// dead time that is longer by `late` >= 0, in the time unit of the plant. Throws InputError for fewer than
+  /// kFewestNoiseSamples samples.
   ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPrior& prior,
               const Eigen::Ref<const Eigen::RowVectorXd>& e, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
               const Eigen::Ref<const Eigen::VectorXd>& initial, double least,
@@ -65,12 +66,15 @@ class ModelErrors {
 
   /// 1 x (nu + nd): the model of the CV, corrected by the mean of the errors.
   const TransferMatrix& model() const { return model_; }
+  /// The same without what is `late` of it: the rows of a record may be, the plant is not. No dead time is
+  /// below 0.
+  TransferMatrix plant() const;
   const BaseNoise& noise() const { return noise_.best; }
   const NoisePosterior& noises() const { return noise_; }
   /// Does the benchmark speak against a model without errors? It does where errors wander, or where the
   /// score test of delta = 0 rejects: b = S' R^-1 e, with the noise and the constant taken out of both, is
   /// N(0, S' R^-1 S) without errors, and b' (S' R^-1 S)^-1 b chi squared.
-  bool rejects_exact_model() const { return wanders() || !(late_ == nominal_) || exact_p_ < kRejectsExact; }
+  bool rejects_exact_model() const { return wanders() || exact_p_ < kRejectsExact; }
   /// Whether errors change along a healthy record, as those of a nonlinear plant do.
   bool wanders() const { return wander_ > 0.0; }
   /// Whether the benchmark shows more than a background beside the errors, so that these may be others than
@@ -137,9 +141,10 @@ class ModelErrors {
 };
 
 /// The model of all CVs with its errors, as the benchmark of a loop shows them. The clock of the record may
-/// be another one than that of the model: where the errors of some CV are more than a background, models are
-/// tried whose outputs are half a sample or a sample early or late, the same for all CVs, and the most
-/// probable one is corrected.
+/// be another one than that of the model: models are tried whose outputs are half a sample or a sample early
+/// or late, the same for all CVs, and the most probable one is corrected. No model is early, since dead times
+/// end at 0: of CVs that are early by up to m samples, row k is compared with the model m samples later, and
+/// the model is late by the rest.
 class LearntModel final : public ModelCorrection {
  public:
   /// Priors of relative_errors(). Throws InputError as ModelErrors.
@@ -147,14 +152,18 @@ class LearntModel final : public ModelCorrection {
               const AssessedLoop& benchmark, double share, double bias);
 
   const ModelErrors& of(Eigen::Index cv) const { return cvs_[static_cast<std::size_t>(cv)]; }
-  /// By how much the outputs of the model are late, in the time unit of the plant; below 0: early.
+  /// By how much the outputs of the record are late, in the time unit of the plant; below 0: early.
   double late() const { return late_; }
-  /// The first CV whose benchmark rejects an exact model; none if no benchmark does.
+  /// errors_in_window() with the rows of the CV at the samples of the model.
+  Eigen::RowVectorXd errors(const AssessedLoop& loop, Eigen::Index cv) const;
+  /// The first CV whose benchmark rejects an exact model, which one of another clock does; none if no
+  /// benchmark does.
   std::optional<Eigen::Index> rejects_exact_model() const;
   /// The same from the samples of the benchmark for whose position `uses` is true; none if they are too few.
   std::optional<ModelErrors> of_part(const Study& study, const AssessedLoop& benchmark, Eigen::Index cv,
                                      const std::function<bool(Eigen::Index)>& uses) const;
-  /// The model with the mean of its errors: the plant without a fault, as far as the benchmark shows it.
+  /// The plant without a fault, as far as the benchmark shows it: ModelErrors::plant() of all CVs, without
+  /// washouts. Its outputs are of the time of the inputs; rows of the record are later by late().
   TransferMatrix plant() const;
   /// By the mean of the errors, and by the most probable rest given the loop.
   std::shared_ptr<const AssessedLoop> corrected(const AssessedLoop& loop) const override;
@@ -164,17 +173,18 @@ class LearntModel final : public ModelCorrection {
 
   static constexpr double kSpeaksForLate = 6.0;  ///< gain of log L
 
-  /// log L that outputs of each CV which are early or late would bring, to the first order.
-  double gain_of_lateness(const AssessedLoop& benchmark) const;
-  std::vector<ModelErrors> errors_of(const Study& study, const AssessedLoop& benchmark, double late) const;
+  std::vector<ModelErrors> errors_of(const Study& study, const AssessedLoop& benchmark, Eigen::Index early,
+                                     double late) const;
 
   double share_, bias_, late_ = 0.0;
+  Eigen::Index early_ = 0;  ///< m
   Eigen::VectorXd initial_;
   std::vector<ModelErrors> cvs_;
 };
 
-/// y - y_sim of a CV over the whole record, NaN outside of the window and where a sample is an outlier.
-Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv);
+/// y - y_sim of a CV over the whole record, NaN outside of the window and where a sample is an outlier. Rows
+/// of y that are `early` by some samples are shifted back.
+Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index early = 0);
 
 /// The deviation below which the simulation errors of a CV are rounding of its outputs.
 double least_noise(const Eigen::Ref<const Eigen::RowVectorXd>& y_sim);

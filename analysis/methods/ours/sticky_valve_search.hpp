@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// The valve that explains the simulation errors best if that of the MV in the place `mv` sticks. It moves
-/// all CVs by what it does not do of what is asked for,
+/// Of each of the first `mvs` inputs, the valve that explains the simulation errors best if that of this MV
+/// sticks. It moves all CVs by what it does not do of what is asked for,
 ///
 ///   e_i = G0_ij x + Z_i' z_i + n_i,   x(k) = valve(u_j(0 ... k)) - u_j(k),   z_i ~ N(0, I),
 ///
@@ -25,11 +25,12 @@ namespace mpm {
 /// |--------|---------|-------------|
 /// | u      | inputs  | nu + nd x N |
 ///
-/// Nothing is found where the MV moves no CV or does not move.
-ExplainedErrors best_sticky_valve(const std::vector<ModelErrors>& models,
-                                  const std::vector<WhitenedErrors>& errors,
-                                  const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                  const Eigen::Ref<const Eigen::VectorXd>& initial, Eigen::Index mv,
-                                  double sample_time);
+/// Nothing is found where the MV moves no CV, where it does not move, and where the best start leads to so
+/// much less than that of another MV that the others need not be searched.
+std::vector<ExplainedErrors> best_sticky_valves(const std::vector<ModelErrors>& models,
+                                                const std::vector<WhitenedErrors>& errors,
+                                                const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                                const Eigen::Ref<const Eigen::VectorXd>& initial,
+                                                Eigen::Index mvs, double sample_time);
 
 }  // namespace mpm

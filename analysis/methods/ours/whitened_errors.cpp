@@ -13,11 +13,11 @@ WhitenedErrors::WhitenedErrors(const BaseNoise& noise, const Eigen::MatrixXd& se
   log_determinant_ += 2.0 * inner_.matrixLLT().diagonal().array().log().sum();
 }
 
-Eigen::RowVectorXd WhitenedErrors::white_of(const Eigen::Ref<const Eigen::RowVectorXd>& h) const {
-  Eigen::MatrixXd both(2, e_.size());
-  both << e_, h;
+Eigen::MatrixXd WhitenedErrors::white_of(const Eigen::Ref<const Eigen::MatrixXd>& h) const {
+  Eigen::MatrixXd all(1 + h.rows(), e_.size());
+  all << e_, h;
   double unused = 0.0;
-  return whitened(models_, both, unused).row(1);
+  return whitened(models_, all, unused).bottomRows(h.rows());
 }
 
 double WhitenedErrors::product_of(const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) const {
@@ -35,9 +35,9 @@ WhitenedErrors::Amplitude WhitenedErrors::amplitude(const Eigen::Ref<const Eigen
   return {product_of(white_, white), product_of(white, white)};
 }
 
-Eigen::RowVectorXd WhitenedErrors::gains(const Eigen::Ref<const Eigen::RowVectorXd>& h) const {
-  const Eigen::RowVectorXd white = white_of(h);
-  return 2.0 * white_.cwiseProduct(white) - white.cwiseAbs2();
+Eigen::MatrixXd WhitenedErrors::gains(const Eigen::Ref<const Eigen::MatrixXd>& h) const {
+  const Eigen::ArrayXXd white = white_of(h).array();
+  return 2.0 * (white.rowwise() * white_.array()) - white.square();
 }
 
 }  // namespace mpm

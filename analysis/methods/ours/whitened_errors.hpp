@@ -32,11 +32,11 @@ class WhitenedErrors {
   };
   Amplitude amplitude(const Eigen::Ref<const Eigen::RowVectorXd>& h) const;
 
-  /// By how much h lowers the square of each whitened sample, Z left out: N.
-  Eigen::RowVectorXd gains(const Eigen::Ref<const Eigen::RowVectorXd>& h) const;
+  /// By how much each row of `h` lowers the square of each whitened sample, Z left out; of the size of `h`.
+  Eigen::MatrixXd gains(const Eigen::Ref<const Eigen::MatrixXd>& h) const;
 
  private:
-  Eigen::RowVectorXd white_of(const Eigen::Ref<const Eigen::RowVectorXd>& h) const;
+  Eigen::MatrixXd white_of(const Eigen::Ref<const Eigen::MatrixXd>& h) const;
   /// a' b of what Z leaves of whitened rows.
   double product_of(const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) const;
 

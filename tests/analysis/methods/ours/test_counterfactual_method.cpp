@@ -1,4 +1,5 @@
 #include <cstdint>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -14,6 +15,7 @@
 #include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/draw.hpp"
+#include "scenarios/loop/historian.hpp"
 #include "scenarios/loop/signals.hpp"
 #include "tests/solvers/active_set_factory.hpp"
 
@@ -128,6 +130,30 @@ TEST_CASE("counterfactual: with the simulation errors of all CVs added, the loop
   REQUIRE(again.status == ControlStatus::ok);
   // The sums are the same to rounding, and the moves to the accuracy of the solver (KKT residual 1e-7).
   CHECK((again.y - seen.y).cwiseAbs().maxCoeff() < 1e-6);
+}
+
+// The disturbances act through the controller, so that a plant with another dead time has another variance.
+TEST_CASE("counterfactual: Ivar of a healthy loop does not depend on the clock of its record") {
+  const auto ivar_with = [](double shift) {
+    Study study = find_study("wood-berry");
+    study.assessment.model = AssessmentModel::benchmark;
+    study.record.cv_shift = std::vector<double>(2, shift);
+    const BasisCase basis = run_basis_case(study, testing::kFactory);
+    const AssessmentContext context = assessment_context(study, basis, testing::kFactory);
+    Assessor assessor(assessment_method("counterfactual"), context);
+    ExperimentDraw healthy;
+    healthy.index = 6;
+    const Trajectory loop = simulate_experiment(study, healthy, testing::kFactory);
+    const Assessment said =
+        assessor.assess(assessed_loop(study, basis.point, recorded(study, healthy.index, loop)));
+    CHECK_FALSE(said.flagged);
+    return Eigen::Vector2d(said.number("ivar", 0), said.number("ivar", 1));
+  };
+  const Eigen::Vector2d on_time = ivar_with(0.0);
+  for (const double shift : {1.0, -1.0, 0.5, -0.5}) {
+    INFO("rows early by " << shift << " samples");
+    CHECK((ivar_with(shift) - on_time).cwiseAbs().maxCoeff() < 0.02);
+  }
 }
 
 }  // namespace mpm

@@ -262,4 +262,20 @@ TEST_CASE("the benchmark of an exact model seldom rejects it, that of an imperfe
   CHECK(imperfect > kRecords / 2);
 }
 
+TEST_CASE("the plant has the dead times of the model before it was made late") {
+  const Study study = find_study("setpoint-methods");
+  const double Ts = study.controller.sample_time;
+  const Eigen::MatrixXd u = input_moves(study.plant.G.cols(), 400, 8);
+  for (const double late : {0.5 * Ts, Ts}) {
+    INFO("late by " << late);
+    const ModelErrors errors(study, 0, relative_errors(study, 0, 1e-6, 0.0), white(400, 9), u,
+                             Eigen::VectorXd::Zero(u.rows()), 1e-6, {}, late);
+    for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input) {
+      const double dead_time = study.plant.G(0, input).dead_time();
+      CHECK(errors.model()(0, input).dead_time() == Approx(dead_time + late).margin(1e-3 * Ts));
+      CHECK(errors.plant()(0, input).dead_time() == Approx(dead_time).margin(1e-3 * Ts));
+    }
+  }
+}
+
 }  // namespace mpm
