@@ -76,4 +76,26 @@ TEST_CASE("the likelihood names a valve that sticks, and only such a one", "[val
   CHECK_FALSE(said(draw_of(ExperimentKind::healthy, 6)).flagged);
 }
 
+// Two MVs that move the CVs nearly alike, and by a hundred times the noise: 2 % of what an MV moves is seen.
+TEST_CASE("the likelihood names a valve that sticks a little where the CVs show it", "[valve]") {
+  Study study = find_study("suite-column");
+  study.assessment.model = AssessmentModel::benchmark;
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  MethodPanel panel(study, assessment_context(study, basis, testing::kFactory), {"likelihood"});
+  for (const Eigen::Index mv : {0, 1})
+    for (const OtherFaultKind kind : {OtherFaultKind::deadband, OtherFaultKind::stick_slip}) {
+      ExperimentDraw sticks = draw_of(ExperimentKind::other, 3);
+      sticks.other = OtherFault{kind, mv, 0.01, 0.0, 0.4};
+      const AssessmentRecord answer =
+          panel
+              .assess(
+                  assessed_loop(study, basis.point, simulate_experiment(study, sticks, testing::kFactory)),
+                  nullptr)
+              .front();
+      INFO("MV " << mv << ", " << to_string(kind));
+      CHECK(answer.told() == ToldSource::valve);
+      CHECK(answer.number("valve_mv") == static_cast<double>(mv));
+    }
+}
+
 }  // namespace mpm
