@@ -52,10 +52,13 @@ TransferMatrix with_gains(const TransferMatrix& G, double factor) {
   return with_mismatches(G, errors);
 }
 
-/// A loop of wood-berry with noise on this plant, from sample `first` on.
-PlantRecord recorded_loop(const Study& study, const TransferMatrix& plant, Eigen::Index first) {
-  const Trajectory loop =
-      run_closed_loop(study, plant, experiment_signals(study, basis_draw()), qp_solver_factory("auto"));
+/// A loop of wood-berry with noise on this plant, from sample `first` on; y_d (none: 0) disturbs its CVs.
+PlantRecord recorded_loop(const Study& study, const TransferMatrix& plant, Eigen::Index first,
+                          const Eigen::MatrixXd& y_d = {}) {
+  LoopSignals signals = experiment_signals(study, basis_draw());
+  if (y_d.size() > 0)
+    signals.y_d = y_d;
+  const Trajectory loop = run_closed_loop(study, plant, signals, qp_solver_factory("auto"));
   const Eigen::Index N = loop.y.cols() - first;
   PlantRecord record;
   record.y = loop.y.rightCols(N);
@@ -422,6 +425,64 @@ TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever de
   disturbed.record.y.row(0) += v;
   const RecordAlternatives slow = disturbed.alternatives();
   CHECK(std::max({slow.valve, slow.sensor, slow.data}) < slow.disturbance + 5.0);
+}
+
+TEST_CASE("a disturbance of an MV that begins within the record explains it, and a valve does not",
+          "[records]") {
+  Suspect disturbed, wrong;
+  const Eigen::Index N = disturbed.record.samples();
+  Eigen::RowVectorXd v = 3.0 * measurement_noise(disturbed.study, 5).row(0);
+  v.head(N / 2).setZero();
+  for (Eigen::Index k = 1; k < N; ++k)
+    v(k) += 0.95 * v(k - 1);
+  Eigen::MatrixXd y_d(2, N);
+  y_d << disturbed.response(0, 0, v), disturbed.response(1, 0, v);
+  disturbed.record = recorded_loop(disturbed.study, with_gains(disturbed.study.plant.G, 1.02), 0, y_d);
+  const RecordAlternatives found = disturbed.alternatives();
+  CHECK(found.disturbance > std::max({found.mismatch, found.valve, found.data}));
+  CHECK(found.fit[RecordSource::disturbance] < 1.0);
+  // What no disturbance explains: the inputs help to predict the errors.
+  wrong.record = recorded_loop(
+      wrong.study, with_mismatches(wrong.study.plant.G, {{0, 0, MismatchParameter::gain, 1.8}}), 0);
+  const RecordAlternatives mismatch = wrong.alternatives();
+  CHECK(mismatch.mismatch > mismatch.disturbance + 20.0);
+  REQUIRE(mismatch.named);
+  CHECK(mismatch.named->channel == Channel{0, 0});
+  CHECK(mismatch.named->parameter == MismatchParameter::gain);
+  CHECK(mismatch.fit[RecordSource::disturbance] > 1.0);
+}
+
+TEST_CASE("what the likelihood is sure of is believed to 99 %", "[records]") {
+  const auto weights_of = [](RecordSource sure, double mismatch) {
+    OfSources weights;
+    weights[sure] = 1.0;
+    return with_alternatives(
+               weights,
+               {.disturbance = 0.0, .mismatch = mismatch, .data = -9.0, .sensor = -9.0, .valve = -9.0}, kNaN)
+        .of;
+  };
+  const OfSources overruled = weights_of(RecordSource::disturbance, 40.0);
+  CHECK(overruled[RecordSource::mismatch] > overruled[RecordSource::disturbance]);
+  const OfSources no_channel = weights_of(RecordSource::both, -8.0);
+  CHECK(no_channel[RecordSource::disturbance] > no_channel[RecordSource::both]);
+  const OfSources kept = weights_of(RecordSource::disturbance, 3.0);
+  CHECK(kept[RecordSource::disturbance] > kept[RecordSource::mismatch]);
+}
+
+TEST_CASE("what leaves more than chance does is none of the faults, as far as simulated records go",
+          "[records]") {
+  OfSources weights;
+  weights[RecordSource::disturbance] = 1.0;
+  RecordAlternatives alternatives{
+      .disturbance = 0.0, .mismatch = -8.0, .data = -9.0, .sensor = -9.0, .valve = -9.0};
+  const auto is_unknown = [&](double fit, double most_fit) {
+    alternatives.fit[RecordSource::disturbance] = fit;
+    const OfSources of = with_alternatives(weights, alternatives, most_fit).of;
+    return of[RecordSource::unknown] > of[RecordSource::disturbance];
+  };
+  CHECK_FALSE(is_unknown(0.9, 0.7));
+  CHECK(is_unknown(1.1, 0.7));
+  CHECK_FALSE(is_unknown(1.1, 1.2));
 }
 
 /// Slow noise on both CVs that never stops, of this many standard deviations of their noise.
