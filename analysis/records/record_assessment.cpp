@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -17,18 +13,17 @@
 #include <fmt/format.h>
 
 #include "analysis/basis/basis_runs.hpp"
-#include "analysis/experiment/experiment.hpp"
-#include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/cost_of_record.hpp"
-#include "analysis/records/fitted_repair.hpp"
 #include "analysis/records/held_columns.hpp"
 #include "analysis/records/model_check.hpp"
 #include "analysis/records/model_habit.hpp"
 #include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
+#include "analysis/records/record_repair.hpp"
+#include "analysis/records/record_trials.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/records/verdict_evidence.hpp"
 #include "analysis/statistics/standstill.hpp"
@@ -36,7 +31,6 @@
 #include "analysis/validation/record_check.hpp"
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
-#include "base/sha256.hpp"
 #include "scenarios/loop/signals.hpp"
 
 namespace mpm {
@@ -69,275 +63,6 @@ BasisCase basis_of(const Study& study, const QpSolverFactory& factory) {
         "values within the limits of the study: check units and operating point (data.scale, "
         "data.operating_point) and the limits at the time (data.lower, data.upper)");
   return basis;
-}
-
-/// The record since something is wrong: what was before counts in no repair.
-AssessedLoop since_onset(const RecordAssessment& assessment) {
-  AssessedLoop loop = assessment.loop;
-  if (assessment.verdict.model.since)
-    loop.y.leftCols(assessment.verdict.model.since->sample).setConstant(kNaN);
-  return loop;
-}
-
-/// The samples at which some CV is judged: no others count in what a repair would bring.
-std::vector<bool> counted_samples(const AssessedLoop& loop) {
-  std::vector<bool> counted(static_cast<std::size_t>(loop.samples()));
-  for (std::size_t k = 0; k < counted.size(); ++k)
-    counted[k] = !loop.y.col(static_cast<Eigen::Index>(k)).array().isNaN().all();
-  return counted;
-}
-
-/// The channel that the verdict would repair: that of the mismatch that the first method names, or else
-/// `likelihood`, or else the first one that they name at the dearest CV, or else the likeliest one. It is
-/// identified again where the errors that the model has beside it are known by their size.
-std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const AssessedLoop& loop,
-                                       const RecordFrame& frame,
-                                       const std::optional<NamedMismatch>& likeliest) {
-  const Study& study = assessment.study;
-  const OperatingPoint& point = frame.basis.point;
-  const Eigen::Index dearest = assessment.verdict.named_cv();
-  const AssessmentRecord* answer = nullptr;
-  for (const AssessmentRecord* const said : {&assessment.said.front(), &assessment.odds})
-    if (channel_to_repair(*said) && (answer == nullptr || !answer->named_mismatch()))
-      answer = said;
-  const auto identified = [&](const Channel& channel, const std::optional<MismatchParameter>& only) {
-    return frame.model_error > 0.0 ? fitted_repair(study, point, assessment.loop, channel, only,
-                                                   frame.model_error, assessment.verdict.model.since)
-                                   : identified_channel(study, point, loop, channel, only);
-  };
-  if (answer == nullptr)
-    return likeliest ? std::optional(identified(likeliest->channel, likeliest->parameter)) : std::nullopt;
-  const std::optional<NamedMismatch> named = answer->named_mismatch();
-  for (Eigen::Index mv = 0; named && named->channel.cv != dearest && mv < study.mv_count(); ++mv)
-    if (answer->names({dearest, mv}))
-      return identified({dearest, mv}, {});
-  if (frame.model_error > 0.0 && (!named || is_fitted_alone(named->parameter)))
-    return identified(*channel_to_repair(*answer), named ? std::optional(named->parameter) : std::nullopt);
-  return channel_repair(study, point, loop, *answer);
-}
-
-/// What the repair says of the channel, as a mismatch: of one that was identified again as a whole its gain,
-/// where that is not the model's.
-NamedMismatch mismatch_of(const ChannelRepair& repair) {
-  if (repair.named)
-    return *repair.named;
-  const bool has_gain = repair.gain_factor.upper < 1.0 || repair.gain_factor.lower > 1.0;
-  const MismatchParameter parameter =
-      repair.parameter.value_or(has_gain ? MismatchParameter::gain : MismatchParameter::channel);
-  const FittedNumber* const size = parameter == MismatchParameter::gain            ? &repair.gain_factor
-                                   : parameter == MismatchParameter::time_constant ? &repair.time_factor
-                                   : parameter == MismatchParameter::dead_time     ? &repair.dead_time_shift
-                                                                                   : nullptr;
-  return size == nullptr
-             ? NamedMismatch{repair.channel, parameter}
-             : NamedMismatch{repair.channel, parameter, size->value, size->lower, size->upper, size->bound};
-}
-
-/// The record as these methods see it.
-JudgedRecord judged_by(const RecordFrame& frame, std::vector<std::string> methods,
-                       const PlantRecord& record) {
-  RecordFrame asked = frame;
-  asked.methods = std::move(methods);
-  return RecordPanel(asked).judge(record);
-}
-
-/// Is nothing left but the usual background, once the channel of the repair is as it is? Of a fault that
-/// begins within the record its later half counts, in which it has grown.
-bool is_mismatch_alone(const RecordAssessment& assessment, const RecordFrame& frame) {
-  if (!assessment.repair || frame.model_error == 0.0 ||
-      assessment.record.benchmark.first < assessment.record.benchmark.second ||
-      !assessment.record.y_sim.array().isNaN().all())
-    return false;
-  RecordFrame repaired = frame;
-  const ChannelRepair& repair = assessment.repair->repair;
-  for (Study* const of : {&repaired.as_kept, &repaired.closed})
-    of->plant.G(repair.channel.cv, repair.channel.mv) = repair.model;
-  PlantRecord record = assessment.record;
-  if (const std::optional<FaultOnset>& since = assessment.verdict.model.since)
-    record.y.leftCols((since->sample + record.samples()) / 2).setConstant(kNaN);
-  const AssessmentRecord said = judged_by(repaired, {kModelCheck}, record).said.front();
-  return said.answered() && said.score <= assessment.model_threshold();
-}
-
-/// Puts what the corrected channel promises into the assessment, when the verdict is about the model, and
-/// what the repair of each channel would bring.
-void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictEvidence& evidence) {
-  if (!assessment.verdict.model.has_mismatch())
-    return;
-  const Study& study = assessment.study;
-  const OperatingPoint& point = frame.basis.point;
-  const AssessedLoop loop = since_onset(assessment);
-  const std::vector<bool> counted = counted_samples(loop);
-  try {
-    std::optional<RepairedChannel> named;
-    if (const auto repair = repair_of(assessment, loop, frame, evidence.likeliest)) {
-      evidence.mismatch = mismatch_of(*repair);
-      assessment.repair = promised_repair(study, point, loop, *repair, frame.factory, counted);
-      assessment.information =
-          channel_information(study, loop, repair->channel,
-                              frame.model_error > 0.0 ? frame.model_error : study.assessment.model_error);
-      evidence.tells_apart = assessment.information->rank == assessment.information->parameters;
-      named = repair->repaired();
-    }
-    if (auto prospects = RepairProspects(study, point, frame.factory).of(loop, named, counted))
-      assessment.prospects = ranked(std::move(*prospects));
-  } catch (const InputError& error) {
-    assessment.no_repair = error.what();
-  }
-  const RepairProspect* const prospect = assessment.named_prospect();
-  if (prospect == nullptr || prospect->gains.empty())
-    return;
-  evidence.promise = {prospect->gain(), prospect->gains.front(), prospect->gains.back(),
-                      prospect->variance_ratio};
-  evidence.worth = study.assessment.of<AdequacyOptions>().worth;
-}
-
-/// The gaps of the record, which those of the simulated ones are.
-std::string shape_text(const PlantRecord& record) {
-  std::string shape;
-  for (Eigen::Index k = 0; k < record.samples(); ++k)
-    for (Eigen::Index cv = 0; cv < record.y.rows(); ++cv)
-      shape += std::isnan(record.y(cv, k)) ? '-' : 'y';
-  return shape;
-}
-
-/// What decides on the answers on simulated records beside their study.
-std::string judged_text(const RecordFrame& frame, const TrialFrame& made, std::string_view seen) {
-  return fmt::format(
-      "judged as the record {} is: {} samples before it, {} not judged, {:g} of the noise as "
-      "bias, {} % of errors, {}, benchmark {} to {}{}, costs since {}",
-      digest_of(seen), made.lead, frame.unjudged, made.bias, 100.0 * frame.model_error,
-      frame.as_kept.assessment.model == AssessmentModel::benchmark ? "which methods allow for"
-                                                                   : "of which methods know nothing",
-      made.record.benchmark.first, made.record.benchmark.second, frame.finds_benchmark ? ", found" : "",
-      frame.since);
-}
-
-/// From what simulated records are made: with a model that may be wrong they begin midway where the record
-/// does.
-TrialFrame trial_frame(const RecordAssessment& assessment, const RecordFrame& frame, const Study& study,
-                       int trials) {
-  constexpr Eigen::Index kLongLead = 2;  // settling times
-  TrialFrame made{.record = assessment.record, .study = {}};
-  if (frame.finds_benchmark)
-    made.record.benchmark = {0, 0};
-  if (frame.model_error > 0.0) {
-    made.bias = kTrialBias;
-    made.lead = std::min(kLongLead * frame.unjudged, assessment.record.samples() - 1);
-  }
-  const Study longer =
-      recorded_study(study, with_lead(assessment.record, made.lead), frame.methods, std::nullopt);
-  const int faulty = trials / 2;
-  made.study = trial_study(longer, {.healthy = trials - faulty,
-                                    .faulty = faulty,
-                                    .model_error = kWorseWorlds * frame.model_error,
-                                    .judged = judged_text(frame, made, shape_text(assessment.record))});
-  return made;
-}
-
-/// Does any method name this one?
-bool is_named_by_methods(RecordSource source) {
-  return source == RecordSource::mismatch || source == RecordSource::disturbance ||
-         source == RecordSource::both || source == RecordSource::valve;
-}
-
-/// How often simulated records of which the same source was said have it.
-using CountsOfSource = std::function<TrialCounts(RecordSource)>;
-
-/// The methods that every simulated record is asked for. The first one, where it tells sources, costs more
-/// than all else, and only its sources count, where the model does not explain the record.
-std::vector<std::string> asked_of_all(const RecordFrame& frame) {
-  std::vector<std::string> names = frame.methods;
-  if (method_table(frame.as_kept.assessment).method(names.front()).tells_sources)
-    names.erase(names.begin());
-  return names;
-}
-
-/// Asks the first method of the frame of the loops `unexplained` only, and the others of all; null: all of
-/// all.
-LoopAssessor source_assessor(const RecordFrame& frame, const std::shared_ptr<const TrialFrame>& made,
-                             const std::vector<std::string>& methods,
-                             std::shared_ptr<const std::set<std::int64_t>> unexplained) {
-  const auto assessor_of = [&](const std::vector<std::string>& names) {
-    const auto asked = std::make_shared<RecordFrame>(frame);
-    asked->methods = names;
-    return trial_assessor(asked, made);
-  };
-  if (!unexplained || methods.front() != frame.methods.front())
-    return assessor_of(methods);
-  const std::vector<std::string> others(methods.begin() + 1, methods.end());
-  AssessmentRecord unasked = unassessed(assessment_forms(made->study, {methods.front()})).front();
-  unasked.status = AssessmentStatus::not_applicable;
-  unasked.reason = "the model explains the record";
-  return [all = assessor_of(methods), rest = others.empty() ? LoopAssessor{} : assessor_of(others),
-          unasked = std::move(unasked),
-          unexplained = std::move(unexplained)](const ExperimentRecord& experiment) {
-    if (unexplained->contains(experiment.draw.index))
-      return all(experiment);
-    std::vector<AssessmentRecord> said = rest ? rest(experiment) : std::vector<AssessmentRecord>{};
-    said.insert(said.begin(), unasked);
-    return said;
-  };
-}
-
-/// Has the loops like the record run, and puts what they say into the assessment. What is returned asks the
-/// first method for its sources; empty without such loops.
-CountsOfSource add_trial(RecordAssessment& assessment, const Study& study,
-                         const std::shared_ptr<const RecordFrame>& frame, int trials,
-                         const TrialRunner& run_trials) {
-  if (trials == 0) {
-    assessment.no_trial = "no calibration run was asked for (--trials)";
-    return {};
-  }
-  try {
-    const auto made = std::make_shared<TrialFrame>(trial_frame(assessment, *frame, study, trials));
-    const auto alike = std::make_shared<RecordFrame>(*frame);
-    alike->as_kept.monitoring.reset();
-    alike->closed.monitoring.reset();
-    alike->late = {};
-    alike->habit.reset();
-    const auto run = [alike, made, run_trials](const std::vector<std::string>& methods,
-                                               const std::shared_ptr<const std::set<std::int64_t>>& asked) {
-      Study with_methods = made->study;
-      with_methods.methods = methods;
-      return run_trials({std::move(with_methods), [=](const std::vector<std::string>& names) {
-                           return source_assessor(*alike, made, names, asked);
-                         }});
-    };
-    const std::vector<std::string> always = asked_of_all(*frame);
-    const TrialLoops loops = run(always, {});
-    const std::size_t last = always.size() - 1;
-    RecordTrial trial{loops.archive,
-                      static_cast<std::int64_t>(loops.records.size()),
-                      {},
-                      trial_findings(made->study, last, loops.records, assessment.model)};
-    const std::size_t unasked = assessment.said.size() - last;  // 1, or 0
-    for (std::size_t method = 0; method < assessment.said.size(); ++method)
-      trial.methods.push_back(method < unasked
-                                  ? std::nullopt
-                                  : std::optional(trial_findings(made->study, method - unasked, loops.records,
-                                                                 assessment.said[method])));
-    const Eigen::Index ny = assessment.study.cv_count();
-    trial.cost = number_thresholds(loops.records, last, kCostNumber, ny);
-    trial.cost_since = number_thresholds(loops.records, last, kCostSinceNumber, ny);
-    trial.fit = fit_threshold(loops.records, last);
-    trial.health = number_thresholds(loops.records, last, "health", 1)(0);
-    trial.counts = trial_counts(loops.records, last, trial.model);
-    assessment.trial = std::move(trial);
-    return [loops, run, last, unasked, methods = frame->methods,
-            model = assessment.trial->model](RecordSource named) {
-      if (!is_named_by_methods(named))
-        return trial_counts(loops.records, last, model);
-      const auto asked = std::make_shared<std::set<std::int64_t>>();
-      for (const std::int64_t index : unexplained_records(loops.records, last, model))
-        asked->insert(index);
-      const TrialLoops of_sources = unasked == 0 ? loops : run(methods, asked);
-      return trial_counts(of_sources.records, last + unasked, model, named);
-    };
-  } catch (const InputError& error) {
-    assessment.no_trial = fmt::format("no loop like this one can be simulated: {}", error.what());
-    return {};
-  }
 }
 
 /// Names the benchmark that was found.
@@ -636,22 +361,6 @@ Eigen::Index worst_cv(const RecordAssessment& of) {
 
 const RepairProspect* RecordAssessment::named_prospect() const {
   return repair ? prospect_of(prospects, repair->repair.channel) : nullptr;
-}
-
-TrialRunner trials_in_memory(QpSolverFactory factory) {
-  return [factory = std::move(factory)](const TrialRequest& request) {
-    const BasisCase basis = run_basis_case(request.study, factory);
-    ExperimentRunner runner(request.study, basis, std::vector<std::string>{}, factory);
-    const LoopAssessor assess = request.assessor(request.study.methods);
-    const auto records = std::make_shared<std::vector<ExperimentRecord>>();
-    for (std::int64_t index = 0; index < request.study.experiments.total(); ++index) {
-      ExperimentRecord record = runner.run(index, StorePolicy::all);
-      answer(record, request.study, assess);
-      record.loop.reset();
-      records->push_back(std::move(record));
-    }
-    return TrialLoops{*records, {}, records};
-  };
 }
 
 RecordAssessment assess_record(const Study& study, PlantRecord record, const AssessOptions& options,

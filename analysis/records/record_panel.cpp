@@ -208,4 +208,11 @@ JudgedRecord RecordPanel::judge(const PlantRecord& record, const PlantRecord* he
   return judged;
 }
 
+JudgedRecord judged_by(const RecordFrame& frame, std::vector<std::string> methods,
+                       const PlantRecord& record) {
+  RecordFrame asked = frame;
+  asked.methods = std::move(methods);
+  return RecordPanel(asked).judge(record);
+}
+
 }  // namespace mpm

@@ -90,4 +90,7 @@ class RecordPanel {
   std::array<Group, 2> groups_;  ///< of RecordFrame::as_kept, then RecordFrame::closed
 };
 
+/// The record as these methods see it.
+JudgedRecord judged_by(const RecordFrame& frame, std::vector<std::string> methods, const PlantRecord& record);
+
 }  // namespace mpm
