@@ -51,7 +51,8 @@ RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& l
 /// The controller answers to these, so that its moves say nothing more of a disturbance, whatever its shape.
 /// The Lagrange multiplier statistic of the last six moves of each input behind its dead time, with the
 /// covariance of White (1980), since the size of a disturbance changes, over the value that chance exceeds in
-/// 1 of 100 records. An absolute test: what no hypothesis explains raises it above 1.
+/// 1 of 100 records. A short record has fewer errors of each CV, and an error that is missing counts as 0. An
+/// absolute test: what no hypothesis explains raises it above 1.
 double input_dependence(const Study& study, const AssessedLoop& loop, const ChannelErrorFit& fit,
                         Eigen::Index cv);
 

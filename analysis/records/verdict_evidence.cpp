@@ -175,8 +175,8 @@ double fit_threshold(const RecordRange& records, std::size_t method) {
 SourceWeights with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
                                 double most_fit) {
   constexpr double kPrior = 0.1, kMostly = 0.8;
-  /// What the likelihood holds for impossible is as probable as this: it takes the noise of the record for an
-  /// autoregression of order 1 that never changes.
+  // A source that the likelihood rules out keeps this probability: it takes the noise for an autoregression
+  // of order 1 that never changes.
   constexpr double kDoubt = 0.01;
   SourceWeights found;
   OfSources& all = found.of;
@@ -184,13 +184,15 @@ SourceWeights with_alternatives(const OfSources& weights, const RecordAlternativ
                                 alternatives.sensor, alternatives.data});
   const auto share = [most](double likelihood) { return std::exp(likelihood - most); };
   const double mismatch = weights[RecordSource::mismatch], both = weights[RecordSource::both],
-               disturbance = weights[RecordSource::disturbance],
-               sum = std::max(mismatch + both + disturbance, 1e-300),
+               disturbance = weights[RecordSource::disturbance], unknown = weights[RecordSource::unknown],
+               sum = std::max(mismatch + both + disturbance + unknown, 1e-300),
                wrong_model = std::max((mismatch + both) / sum, kDoubt) * share(alternatives.mismatch),
                alone = mismatch + both > 0.0 ? mismatch / (mismatch + both) : 1.0;
   all[RecordSource::mismatch] = alone * wrong_model;
   all[RecordSource::both] = (1.0 - alone) * wrong_model;
   all[RecordSource::disturbance] = std::max(disturbance / sum, kDoubt) * share(alternatives.disturbance);
+  all[RecordSource::unknown] =
+      unknown / sum * share(std::max(alternatives.mismatch, alternatives.disturbance));
   all[RecordSource::valve] = kPrior * share(alternatives.valve);
   all[RecordSource::sensor] = 2.0 * kPrior * share(alternatives.sensor);  // its two causes, until below
   all[RecordSource::data] = kPrior * share(alternatives.data);

@@ -16,7 +16,7 @@ namespace mpm {
 ///   sin^2(gamma/2) = (min(p, b) - 1/2)/(a + b - 1),   sin^2(phi/2) = (max(p, b) - 1/2)/(a + b - 1)
 ///
 /// and T + 9.848 about a gamma distribution (Chiani 2014, J. Multivar. Anal. 129, 69). In trials with 2 to 7
-/// variables and 15 to 240 degrees of freedom, L exceeds the quantile for 2.5 % with 1.5 to 2.6 %.
+/// variables and 15 to 240 degrees of freedom, L exceeds the quantile for 2.5 % in 1.5 to 2.6 % of them.
 ///
 /// | symbol | name          | meaning                                 | unit |
 /// |--------|---------------|-----------------------------------------|------|

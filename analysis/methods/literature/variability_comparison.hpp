@@ -49,7 +49,8 @@ struct VariabilityDirection {
   Eigen::VectorXd p;          ///< ny; unit length
   double f_benchmark = kNaN;  ///< f_I of (2.9)
   double f_monitored = kNaN;  ///< f_II of (2.9)
-  Interval limits;  ///< of mu (VariabilityLimits); without a finite end for records that are too short
+  Interval limits;  ///< of mu (VariabilityLimits); of records that are too short the upper one is +infinity,
+                    ///< with `largest_root` the lower one 0
   VariabilityChange change = VariabilityChange::none;
 };
 

@@ -49,7 +49,7 @@ Interval variance_ratio_limits(double mu, const VarianceSample& benchmark, const
 /// with l(b, a) the quantile of the largest root of two covariance matrices with b and a degrees of freedom
 /// that (1 - confidence)/2 exceed (`largest_root_upper_quantile`). nu is the number of independent values
 /// whose sample variance scatters as that of the n does. Where a record is too short for its autocorrelation,
-/// with nu_I or nu_II below the number of variables, the limit is 0 or +infinity.
+/// with nu_I or nu_II not above the number of variables, the limit is 0 or +infinity.
 /// @throws InputError as `variance_ratio_limits`, and for no variable
 Interval largest_root_limits(double mu, const VarianceSample& benchmark, const VarianceSample& monitored,
                              double confidence, Eigen::Index variables);

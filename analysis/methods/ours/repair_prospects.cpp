@@ -198,7 +198,7 @@ bool RepairProspects::may_have_made(const Seen& seen, const Outcome& now) const 
     return true;
   Trajectory recorded;
   recorded.y = gaps_closed(seen.whole.y);
-  return (now.variances.array() <= kMostUnlike * counted_costs(study_, recorded, seen.counted).array()).all();
+  return !(now.variances.array() > kMostUnlike * counted_costs(study_, recorded, seen.counted).array()).any();
 }
 
 std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects) {

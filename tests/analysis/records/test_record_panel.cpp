@@ -452,6 +452,17 @@ TEST_CASE("a disturbance of an MV that begins within the record explains it, and
   CHECK(mismatch.fit[RecordSource::disturbance] > 1.0);
 }
 
+TEST_CASE("a CV with hardly a value tells nothing of its noise", "[records]") {
+  for (const Eigen::Index values : {2, 3, 6, 8}) {
+    Suspect suspect;
+    suspect.record.y.row(0).tail(suspect.record.samples() - values).setConstant(kNaN);
+    const AssessedLoop loop = suspect.loop();
+    const ChannelErrorFit fit = ChannelErrorFits(suspect.frame.as_kept, 0.05).of(loop, 0);
+    CHECK(std::isnan(input_dependence(suspect.frame.as_kept, loop, fit, 0)));
+    CHECK(std::isfinite(suspect.alternatives().disturbance));
+  }
+}
+
 TEST_CASE("what the likelihood is sure of is believed to 99 %", "[records]") {
   const auto weights_of = [](RecordSource sure, double mismatch) {
     OfSources weights;
