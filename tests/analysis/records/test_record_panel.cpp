@@ -441,7 +441,6 @@ TEST_CASE("a disturbance of an MV that begins within the record explains it, and
   const RecordAlternatives found = disturbed.alternatives();
   CHECK(found.disturbance > std::max({found.mismatch, found.valve, found.data}));
   CHECK(found.fit[RecordSource::disturbance] < 1.0);
-  // What no disturbance explains: the inputs help to predict the errors.
   wrong.record = recorded_loop(
       wrong.study, with_mismatches(wrong.study.plant.G, {{0, 0, MismatchParameter::gain, 1.8}}), 0);
   const RecordAlternatives mismatch = wrong.alternatives();
@@ -449,7 +448,19 @@ TEST_CASE("a disturbance of an MV that begins within the record explains it, and
   REQUIRE(mismatch.named);
   CHECK(mismatch.named->channel == Channel{0, 0});
   CHECK(mismatch.named->parameter == MismatchParameter::gain);
-  CHECK(mismatch.fit[RecordSource::disturbance] > 1.0);
+}
+
+TEST_CASE("what test signals move beyond the model is no disturbance", "[records]") {
+  Suspect moved;
+  Eigen::RowVectorXd test = measurement_noise(moved.study, 5).row(0);
+  for (Eigen::Index k = 0; k < test.size(); ++k)
+    test(k) = k % 7 > 0 ? test(k - 1) : test(k) > 0.0 ? 0.1 : -0.1;
+  moved.record.u.row(0) += test;
+  for (Eigen::Index cv = 0; cv < 2; ++cv)
+    moved.record.y.row(cv) += moved.response(cv, 0, test);
+  CHECK(moved.alternatives().fit[RecordSource::disturbance] < 1.0);
+  moved.record.y.row(0) += moved.response(0, 0, test);
+  CHECK(moved.alternatives().fit[RecordSource::disturbance] > 1.0);
 }
 
 TEST_CASE("a CV with hardly a value tells nothing of its noise", "[records]") {
