@@ -376,7 +376,7 @@ class Comparison {
     const auto none_of = [this](Eigen::Index) -> Eigen::RowVectorXd {
       return Eigen::RowVectorXd::Zero(loop_.samples());
     };
-    const auto no_column = [&nothing](Eigen::Index) { return nothing; };
+    const auto no_column = [&nothing](Eigen::Index) -> const Columns& { return nothing; };
     found.fit[RecordSource::disturbance] = dependence(none_of, no_column);
     found.fit[RecordSource::sensor] = dependence(none_of, [this, &found, &nothing](Eigen::Index cv) {
       return cv == found.sensor_cv ? Columns(drift_) : nothing;

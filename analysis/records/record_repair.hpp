@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/records/record_assessment.hpp"
+#include "analysis/records/assessed_record.hpp"
 #include "analysis/records/record_panel.hpp"
 #include "analysis/records/record_verdict.hpp"
 

@@ -18,7 +18,6 @@
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/records/model_check.hpp"
-#include "analysis/records/trial_record.hpp"
 #include "analysis/records/verdict_evidence.hpp"
 #include "analysis/study_files/recorded_study.hpp"
 #include "base/error.hpp"

@@ -43,9 +43,9 @@ struct CounterfactualOptions {
 /// contains noise and y0 does not; v is what noise adds to the variance, taken from the basis case y_b of the
 /// same controller (NoiseVariance has other choices). Gaps of e are filled by linear interpolation. For
 /// windows, the record is simulated once from its start. Where the rows of the record are late by l against
-/// the inputs (LearntModel::late()), the loop is simulated without this delay, and its outputs are compared as
-/// the rows of such a record: with x the output of G0 alone, y0_diag(k) = x(k - l) + e(k), where e has acted in
-/// the loop l earlier, in whole samples.
+/// the inputs (LearntModel::late()), the loop is simulated without this delay, and its outputs are compared
+/// as the rows of such a record: with x the output of G0 alone, y0_diag(k) = x(k - l) + e(k), where e has
+/// acted in the loop l earlier, in whole samples.
 ///
 /// v is of one realisation of the noise and of the excitation of the benchmark. A level that is free in its
 /// range has another variance in each record, and noise makes it smaller as often as larger. So, where errors
