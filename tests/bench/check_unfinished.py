@@ -44,8 +44,8 @@ def main(program, study):
         sweep = run("sweep", "chapter6", "-o", folder / "sweep", "--experiments", 2, "--dry-run").stdout
         assert re.search(r"^together: \d+ studies, \d+ loops to run", sweep, re.MULTILINE), sweep
         suite = run("suite", "quick", "-o", folder / "suite", "--experiments", 2, "--dry-run").stdout
-        cells = re.findall(r"^[\w-]+\.[\w-]+: 22 loops, ", suite, re.MULTILINE)  # 20 of them calibrate
-        assert f"together: {len(cells)} studies, {22 * len(cells)} loops" in suite and len(cells) > 3, suite
+        cells = re.findall(r"^[\w-]+\.[\w-]+: 42 loops, ", suite, re.MULTILINE)  # 40 of them calibrate
+        assert f"together: {len(cells)} studies, {42 * len(cells)} loops" in suite and len(cells) > 3, suite
         for several in sweep, suite:
             assert re.search(r"^time: about [\d.]+ (s|min|h), from the first loops of \d of them$", several, re.MULTILINE), several
         for command in "compare", "reproduce":  # which say no time do not promise one

@@ -61,7 +61,8 @@ TEST_CASE(
     "decorrelation by regression: inputs that are nearly dependent leave what does not hang on rounding") {
   // Slow inputs and many slow filters: singular values of all sizes.
   const Eigen::MatrixXd steps = mpm::testing::random_steps(7, 300, 5);
-  const Eigen::MatrixXd u = laguerre_responses(steps, 4, 0.9)(Eigen::all, Eigen::seq(3, 27, 4)).transpose();
+  const Eigen::MatrixXd slow = laguerre_responses(steps, 4, 0.9)(Eigen::all, Eigen::seq(3, 27, 4));
+  const Eigen::MatrixXd u = slow.transpose();
   const Eigen::MatrixXd x = mpm::testing::white_inputs(2, 300, 6);
   const DecorrelationOptions options = decorrelation_with(DecorrelationModel::fir);
   const Eigen::MatrixXd left = Decorrelator(u, options).decorrelate(x, 1).residuals;

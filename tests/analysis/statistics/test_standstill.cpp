@@ -21,9 +21,9 @@ TEST_CASE("standstill: the longest stretch of one value, over what is missing", 
 }
 
 TEST_CASE("standstill: chance does not freeze noise, also where it is rounded or held", "[standstill]") {
-  const Eigen::Index N = 600;
+  constexpr Eigen::Index N = 600;
   Eigen::RowVectorXd noise = testing::white_noise(N, 3).transpose();
-  const auto is_frozen = [N](const Eigen::RowVectorXd& values) {
+  const auto is_frozen = [](const Eigen::RowVectorXd& values) {
     const Standstill longest = longest_standstill(values);
     return is_long(longest, N) && longest.chance < 1e-6;
   };
