@@ -46,7 +46,7 @@ FmuMessages& messages() {
 
 /// The library with its own symbols first. The sanitizers cannot have that.
 void* load_library(const std::string& path) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef MPMBENCH_IS_SANITIZED
   constexpr int kOwnFirst = 0;
 #else
   constexpr int kOwnFirst = RTLD_DEEPBIND;

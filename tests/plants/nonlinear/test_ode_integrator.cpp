@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "base/error.hpp"
+#include "base/non_finite.hpp"
 #include "plants/nonlinear/ode_integrator.hpp"
 #include "plants/nonlinear/ode_plant.hpp"
 
@@ -118,12 +119,13 @@ double square_wave_error(OdeMethod method, double tolerance) {
   return error;
 }
 
+/// What two threads may call: an output is not a number where a step fails.
 std::vector<double> recorded(double gain, OdeMethod method) {
   OdePlant plant(std::make_shared<Oscillator>(), 0.5, {.method = method});
   std::vector<double> outputs;
   for (int k = 0; k < 400; ++k) {
-    CHECK(plant.advance(input(gain * std::sin(0.3 * k))) == PlantStatus::ok);
-    outputs.push_back(plant.output()(0));
+    const bool advances = plant.advance(input(gain * std::sin(0.3 * k))) == PlantStatus::ok;
+    outputs.push_back(advances ? plant.output()(0) : kNaN);
   }
   return outputs;
 }
