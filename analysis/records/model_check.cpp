@@ -37,8 +37,8 @@ class ModelCheck final : public AssessmentMethod {
       assessment.cvs.push_back({score > kFarTooLarge, score});
       assessment.score = std::max(assessment.score, score);
       assessment.numbers.push_back({"noise", fit.noise, cv});
-      if (const double F = input_dependence(study_, loop, fit, cv); F > dependence)
-        dependence = F;
+      if (const double found = input_dependence(study_, loop, fit, cv); found > dependence)
+        dependence = found;
       for (const ChannelHistory& history : channel_histories(beside, cv, begins, loop.samples(), kInfinity))
         for (const ChannelPeriod& period : history.periods)
           health = std::max(health, period.score);

@@ -13,8 +13,7 @@
 
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "analysis/records/channel_error_fit.hpp"
-#include "analysis/records/coloured_noise.hpp"
-#include "analysis/statistics/chi_squared.hpp"
+#include "analysis/records/cv_errors.hpp"
 #include "base/non_finite.hpp"
 #include "plants/linear/zero_order_hold.hpp"
 #include "scenarios/faults/fault.hpp"
@@ -23,300 +22,6 @@
 
 namespace mpm {
 namespace {
-
-using Columns = Eigen::MatrixXd;
-
-/// Order of the autoregression of the noise: approximates a disturbance behind two lags beside white noise.
-constexpr Eigen::Index kOrder = 6;
-/// Lags of the errors of other CVs beside those of a CV, and of all CVs in input_dependence(). Chosen, as
-/// what else of the noise is, on records of others' plants under the seeds 83 and 84
-/// (tests/reliability/records.py).
-constexpr Eigen::Index kOtherLags = 6, kOwnLags = 12;
-
-/// A_l' B_m of signals (n x .) that are l and m samples late, l, m <= kOrder, over the samples that have
-/// a past of this length. The products of signals that an autoregression whitens follow from them without the
-/// signals:
-///
-///   (A_0 - sum_l a_l A_l)' (B_0 - sum_m a_m B_m)
-class LaggedProducts {
- public:
-  LaggedProducts(const Columns& A, const Columns& B) {
-    const Eigen::Index n = A.rows(), count = n - kOrder;
-    const auto late = [count](const Columns& signals, Eigen::Index lag) {
-      return signals.middleRows(kOrder - lag, count);
-    };
-    for (Eigen::Index m = 0; m < kLags; ++m)
-      at(0, m) = late(A, 0).transpose() * late(B, m);
-    for (Eigen::Index l = 1; l < kLags; ++l)
-      at(l, 0) = &A == &B ? Columns(at(0, l).transpose()) : Columns(late(A, l).transpose() * late(B, 0));
-    // One sample later a sample enters at the start, and one leaves at the end.
-    for (Eigen::Index l = 0; l + 1 < kLags; ++l)
-      for (Eigen::Index m = 0; m + 1 < kLags; ++m)
-        at(l + 1, m + 1) = at(l, m) + A.row(kOrder - 1 - l).transpose() * B.row(kOrder - 1 - m) -
-                           A.row(n - 1 - l).transpose() * B.row(n - 1 - m);
-  }
-
-  Columns whitened_by(const Eigen::VectorXd& a) const {
-    Eigen::VectorXd factors(kLags);
-    factors << 1.0, -a;
-    Columns sum = Columns::Zero(products_.front().rows(), products_.front().cols());
-    for (Eigen::Index l = 0; l < kLags; ++l)
-      for (Eigen::Index m = 0; m < kLags; ++m)
-        if (const double factor = factors(l) * factors(m); factor != 0.0)
-          sum += factor * at(l, m);
-    return sum;
-  }
-
- private:
-  static constexpr Eigen::Index kLags = kOrder + 1;
-
-  Columns& at(Eigen::Index l, Eigen::Index m) { return products_[static_cast<std::size_t>(l * kLags + m)]; }
-  const Columns& at(Eigen::Index l, Eigen::Index m) const {
-    return products_[static_cast<std::size_t>(l * kLags + m)];
-  }
-
-  std::array<Columns, static_cast<std::size_t>(kLags* kLags)> products_;
-};
-
-/// Q of A = Q R, n x m.
-Columns basis_of(const Columns& A) {
-  return Eigen::HouseholderQR<Columns>(A).householderQ() * Columns::Identity(A.rows(), A.cols());
-}
-
-/// Which errors of a CV in the same sample and in those before tell of a disturbance.
-struct PastErrors {
-  Eigen::Index cv, first, last;  ///< lags
-};
-
-/// Errors of CVs, N x columns. A sample that is missing counts as 0.
-Columns past_errors(const AssessedLoop& loop, const std::vector<PastErrors>& asked) {
-  const Eigen::Index N = loop.samples();
-  Eigen::Index column = 0;
-  for (const PastErrors& of : asked)
-    column += of.last - of.first + 1;
-  Columns past = Columns::Zero(N, column);
-  column = 0;
-  for (const PastErrors& of : asked) {
-    const Eigen::VectorXd e = (loop.y.row(of.cv) - loop.y_sim.row(of.cv)).transpose();
-    for (Eigen::Index lag = of.first; lag <= of.last; ++lag)
-      past.col(column++).tail(N - lag) = e.array().isNaN().select(0.0, e).head(N - lag);
-  }
-  return past;
-}
-
-/// `lags`, or fewer: of `samples` there are ten times as many as columns.
-Eigen::Index fitting_lags(const AssessedLoop& loop, Eigen::Index samples, Eigen::Index lags) {
-  constexpr Eigen::Index kSamplesToColumn = 10;
-  return std::clamp<Eigen::Index>(samples / (kSamplesToColumn * loop.y.rows()), 1,
-                                  std::min(lags, loop.samples() - 1));
-}
-
-/// What a disturbance that reaches several CVs shows of this one, which has `samples`, in the others: their
-/// errors before, and of those above it in the same sample, too, so that errors of one sample that are alike
-/// count once.
-Columns others_errors(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index samples) {
-  const Eigen::Index lags = fitting_lags(loop, samples, kOtherLags);
-  std::vector<PastErrors> asked;
-  for (Eigen::Index other = 0; other < loop.y.rows(); ++other)
-    if (other != cv)
-      asked.push_back({other, other < cv ? 0 : 1, lags});
-  return past_errors(loop, asked);
-}
-
-/// What the controller knows of a disturbance of any shape in a CV that has `samples`.
-Columns known_errors(const AssessedLoop& loop, Eigen::Index samples) {
-  const Eigen::Index lags = fitting_lags(loop, samples, kOwnLags);
-  std::vector<PastErrors> asked;
-  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
-    asked.push_back({cv, 1, lags});
-  return past_errors(loop, asked);
-}
-
-/// Samples that follow each other.
-struct Part {
-  Eigen::Index first, count;
-
-  Columns of(const Columns& signals) const { return signals.middleRows(first, count); }
-};
-
-/// One CV: its errors, and how likely they are under a hypothesis. From some sample on the noise may be
-/// another one.
-class CvErrors {
- public:
-  CvErrors(const AssessedLoop& loop, const ChannelErrorFit& fit, Eigen::Index cv) : samples_(fit.samples) {
-    const Columns others = others_errors(loop, cv, fit.e.size());
-    const Eigen::Index p = fit.X.size() == 0 ? 0 : fit.X.cols();
-    X_.resize(fit.e.size(), p + others.cols());
-    if (p > 0)
-      X_.leftCols(p) = fit.X;
-    X_.rightCols(others.cols()) = others(samples_, Eigen::all);
-    prior_ = Eigen::VectorXd::Zero(X_.cols());
-    prior_.head(p).setOnes();
-    if (!loop.untold.empty()) {
-      const Columns untold = loop.untold[static_cast<std::size_t>(cv)](Eigen::all, samples_).transpose();
-      Q_ = basis_of(untold);
-    }
-    e_ = told(fit.e);
-    divide(e_.size());
-  }
-
-  /// Lets the noise be another one from the best of some samples on, or from `onset` on, where that explains
-  /// the errors better.
-  void find_change(Eigen::Index onset) {
-    constexpr Eigen::Index kTried = 12;
-    const double penalty = 0.5 * (kOrder + 2.0) * log_samples();
-    Eigen::Index best = e_.size();
-    double most = none_;
-    const auto take = [&](Eigen::Index change) {
-      if (change < kFewestSamples || e_.size() - change < kFewestSamples)
-        return;
-      divide(change);
-      if (none_ - penalty > most) {
-        most = none_ - penalty;
-        best = change;
-      }
-    };
-    take(std::lower_bound(samples_.begin(), samples_.end(), onset) - samples_.begin());
-    for (Eigen::Index part = 1; part < kTried; ++part)
-      take(part * e_.size() / kTried);
-    divide(best);
-  }
-
-  double none() const { return none_; }
-  double log_samples() const { return std::log(static_cast<double>(e_.size())); }
-
-  /// With h (N of the loop) taken off.
-  double without(const Eigen::RowVectorXd& h) const { return without(h, Columns(h.size(), 0)); }
-  /// The same with these columns (N of the loop, each of any size) in it.
-  double without(const Eigen::RowVectorXd& h, const Columns& free) const {
-    return log_likelihood(e_ - told(h(samples_).transpose()), told_columns(free));
-  }
-  double with(const Columns& free) const { return log_likelihood(e_, told_columns(free)); }
-
-  /// input_dependence() since the noise changed, where h and `free` are in the errors; `moves` of the inputs
-  /// (N of the loop).
-  double dependence(const AssessedLoop& loop, const Eigen::RowVectorXd& h, const Columns& free,
-                    const Columns& moves) const {
-    constexpr double kChance = 0.01;  // over all CVs
-    if (e_.size() <= kOrder)
-      return kNaN;
-    const Columns past = known_errors(loop, e_.size());
-    const double level = kChance / static_cast<double>(loop.y.rows());
-    Eigen::VectorXd left;
-    log_likelihood(e_ - told(h(samples_).transpose()), told_columns(free), &left);
-    const Part& last = parts_.back();
-    const auto since = [this, &last](const Columns& signals) -> Columns {
-      return last.of(signals(samples_, Eigen::all));
-    };
-    Columns P(last.count, past.cols() + 1), M = since(moves);
-    P << since(past), Eigen::VectorXd::Ones(last.count);
-    const Columns known = basis_of(P);
-    M -= known * (known.transpose() * M);
-    Eigen::VectorXd w = last.of(left);
-    w -= known * (known.transpose() * w);
-    Eigen::ColPivHouseholderQR<Columns> qr(M);
-    const Eigen::Index p = qr.rank();
-    if (p == 0 || last.count <= known.cols() + p || w.isZero(0.0))
-      return kNaN;
-    const Columns Z = qr.householderQ() * Columns::Identity(last.count, p);
-    const Eigen::VectorXd Zw = Z.transpose() * w;
-    const Columns S = Z.transpose() * w.array().square().matrix().asDiagonal() * Z;
-    return Zw.dot(S.ldlt().solve(Zw)) / chi_squared_upper_quantile(level, static_cast<double>(p));
-  }
-
- private:
-  static constexpr int kPasses = 3;
-  static constexpr Eigen::Index kFewestSamples = 50;
-
-  /// The noise changes after this many samples.
-  void divide(Eigen::Index change) {
-    parts_ = {{0, change}};
-    if (change < e_.size())
-      parts_.push_back({change, e_.size() - change});
-    XX_.clear();
-    if (e_.size() <= kOrder)
-      return;
-    for (const Part& part : parts_) {
-      const Columns X = part.of(X_);
-      XX_.emplace_back(X, X);
-    }
-    none_ = log_likelihood(e_, Columns(e_.size(), 0));
-  }
-
-  /// What is known of a part, and the noise that it has.
-  struct NoisePart {
-    LaggedProducts Xe, FX, FF, Fe;
-    double variance;
-    Eigen::VectorXd a = Eigen::VectorXd::Zero(kOrder);
-  };
-
-  Eigen::VectorXd told(const Eigen::VectorXd& signal) const {
-    return Q_.size() == 0 ? signal : Eigen::VectorXd(signal - Q_ * (Q_.transpose() * signal));
-  }
-
-  Columns told_columns(const Columns& free) const {
-    Columns H(e_.size(), free.cols());
-    for (Eigen::Index column = 0; column < free.cols(); ++column)
-      H.col(column) = told(free.col(column)(samples_));
-    return H;
-  }
-
-  /// 0 of a CV that has too few samples to tell anything.
-  double log_likelihood(const Eigen::VectorXd& e, const Columns& free,
-                        Eigen::VectorXd* left = nullptr) const {
-    if (e.size() <= kOrder)
-      return 0.0;
-    const Eigen::Index p = X_.cols(), q = free.cols();
-    std::vector<NoisePart> noises;
-    for (const Part& part : parts_) {
-      const Columns X = part.of(X_), F = part.of(free), own = part.of(e);
-      noises.push_back({{X, own},
-                        {F, X},
-                        {F, F},
-                        {F, own},
-                        std::max(1e-300, own.squaredNorm() / static_cast<double>(part.count))});
-    }
-    Eigen::VectorXd of_errors, errors = e;
-    for (int pass = 0; pass < kPasses; ++pass) {
-      Columns A = Columns::Zero(p + q, p + q);
-      Eigen::VectorXd right = Eigen::VectorXd::Zero(p + q);
-      for (std::size_t i = 0; i < parts_.size(); ++i) {
-        const NoisePart& noise = noises[i];
-        const Columns FX = noise.FX.whitened_by(noise.a);
-        A.topLeftCorner(p, p) += XX_[i].whitened_by(noise.a) / noise.variance;
-        A.topRightCorner(p, q) += FX.transpose() / noise.variance;
-        A.bottomLeftCorner(q, p) += FX / noise.variance;
-        A.bottomRightCorner(q, q) += noise.FF.whitened_by(noise.a) / noise.variance;
-        right.head(p) += noise.Xe.whitened_by(noise.a) / noise.variance;
-        right.tail(q) += noise.Fe.whitened_by(noise.a) / noise.variance;
-      }
-      A.diagonal().head(p) += prior_;
-      A.diagonal().array() += 1e-12;
-      of_errors = A.ldlt().solve(right);
-      errors = e - X_ * of_errors.head(p) - free * of_errors.tail(q);
-      for (std::size_t i = 0; i < parts_.size(); ++i) {
-        const Eigen::VectorXd own = parts_[i].of(errors), w = mpm::whitened_by(noises[i].a, own);
-        noises[i].variance = std::max(1e-300, w.squaredNorm() / static_cast<double>(w.size()));
-        if (pass + 1 < kPasses)
-          noises[i].a = autoregression_of(own, kOrder);
-      }
-    }
-    if (left != nullptr)
-      *left = errors;
-    double sum = -0.5 * prior_.dot(of_errors.head(p).cwiseAbs2());
-    for (std::size_t i = 0; i < parts_.size(); ++i)
-      sum -= 0.5 * static_cast<double>(parts_[i].count) * std::log(noises[i].variance);
-    return sum;
-  }
-
-  std::vector<Eigen::Index> samples_;
-  Columns X_, Q_;
-  Eigen::VectorXd prior_;  ///< precision of the coefficients of X
-  std::vector<Part> parts_;
-  std::vector<LaggedProducts> XX_;  ///< of each part
-  Eigen::VectorXd e_;
-  double none_ = 0.0;
-};
 
 /// The moves of the inputs of a CV behind their dead times, N x columns.
 Columns moves_of(const Study& study, const AssessedLoop& loop, Eigen::Index cv) {
@@ -444,13 +149,14 @@ class Comparison {
   }
 
  private:
-  /// The largest F of a CV, where h(cv) and free(cv) are in its errors.
+  /// The largest input_dependence() of a CV, where h(cv) and free(cv) are in its errors.
   template <class H, class Free>
   double dependence(H h, Free free) const {
     double most = 0.0;
     for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv)
-      if (const double F = of(cv).dependence(loop_, h(cv), free(cv), moves_of(study_, loop_, cv)); F > most)
-        most = F;
+      if (const double found = of(cv).dependence(loop_, h(cv), free(cv), moves_of(study_, loop_, cv));
+          found > most)
+        most = found;
     return most;
   }
 
@@ -642,10 +348,6 @@ class Comparison {
 };
 
 }  // namespace
-
-Eigen::RowVectorXd late_by(const Eigen::RowVectorXd& y, double s) {
-  return rows_of_line({OutputSampling::snapshot, -s}, y);
-}
 
 RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& loop, double delta,
                                        const std::optional<FaultOnset>& onset) {

@@ -18,13 +18,13 @@ namespace mpm {
 /// model (ChannelErrorFit), E_i the errors of the other CVs in up to six samples before (those above i also
 /// in the same sample), and n an autoregression of order 6,
 ///
-///   e_i = h_i + X_i a_i + E_i b_i + n_i,   a_i ~ N(0, I),   L = sum_i (-N/2 log s_i^2 - |a_i|^2 / 2) - k/2
-///   log N
+///   e_i = h_i + X_i a_i + E_i b_i + n_i,   a_i ~ N(0, I),   b_i of any size
+///   L = sum_i (-N/2 log s_i^2 - |a_i|^2 / 2) - k/2 log N
 ///
 /// s_i^2 the mean square of the innovations, k the parameters of the hypothesis (Schwarz 1978). The slow part
 /// of n is a disturbance, which may be there in each of them; E_i has one that reaches several CVs, such as
-/// that of an MV. From one sample on, the same for all hypotheses, n may be another autoregression, where
-/// that brings more than its k/2 log N.
+/// that of an MV. From some sample of each CV on, the same for all hypotheses, n may be another
+/// autoregression, where that brings more than its k/2 log N.
 ///
 /// | hypothesis  | h                                                                                        |
 /// |-------------|------------------------------------------------------------------------------------------|
@@ -55,9 +55,6 @@ RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& l
 /// absolute test: what no hypothesis explains raises it above 1.
 double input_dependence(const Study& study, const AssessedLoop& loop, const ChannelErrorFit& fit,
                         Eigen::Index cv);
-
-/// y at s samples before, a straight line between samples; the first and the last value beyond the ends.
-Eigen::RowVectorXd late_by(const Eigen::RowVectorXd& y, double s);
 
 /// CVs whose rows are of another time than those of the inputs.
 struct LateCvs {

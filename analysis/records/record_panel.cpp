@@ -17,6 +17,7 @@
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/historian.hpp"
+#include "scenarios/loop/record_rows.hpp"
 #include "scenarios/study/window_scan.hpp"
 
 namespace mpm {

@@ -76,4 +76,8 @@ Eigen::RowVectorXd rows_of_line(const RowTime& time, const Eigen::Ref<const Eige
   return rows_between(time, signal, kLine);
 }
 
+Eigen::RowVectorXd late_by(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double s) {
+  return rows_of_line({OutputSampling::snapshot, -s}, signal);
+}
+
 }  // namespace mpm

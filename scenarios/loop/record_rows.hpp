@@ -36,4 +36,7 @@ Eigen::RowVectorXd rows_of_held(const RowTime& time, const Eigen::Ref<const Eige
 /// Rows of a signal that goes along straight lines from sample to sample.
 Eigen::RowVectorXd rows_of_line(const RowTime& time, const Eigen::Ref<const Eigen::RowVectorXd>& signal);
 
+/// The same signal s samples before each row (below 0: after it), or its first or last value beyond the ends.
+Eigen::RowVectorXd late_by(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double s);
+
 }  // namespace mpm

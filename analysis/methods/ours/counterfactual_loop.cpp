@@ -36,7 +36,7 @@ Eigen::MatrixXd later_rows(const Eigen::MatrixXd& y, double samples) {
     return y;
   Eigen::MatrixXd later(y.rows(), y.cols());
   for (Eigen::Index row = 0; row < y.rows(); ++row)
-    later.row(row) = rows_of_line({OutputSampling::snapshot, -samples}, y.row(row));
+    later.row(row) = late_by(y.row(row), samples);
   return later;
 }
 
