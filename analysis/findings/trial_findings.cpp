@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "analysis/experiment/judgement.hpp"
 #include "analysis/statistics/conformal_threshold.hpp"
+#include "analysis/statistics/quantile.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -28,8 +30,17 @@ std::array<double, 2> thresholds_of_halves(const std::vector<double>& scores) {
 double trial_threshold(const std::vector<double>& healthy, double false_alarms) {
   if (healthy.empty())
     return kNaN;
-  return conformal_threshold(healthy, false_alarms)
-      .value_or(*std::max_element(healthy.begin(), healthy.end()));
+  if (const std::optional<double> conformal = conformal_threshold(healthy, false_alarms))
+    return *conformal;
+  const double median = upper_median(healthy), most = *std::max_element(healthy.begin(), healthy.end());
+  double excess = 0.0, above = 0.0;
+  for (const double score : healthy)
+    if (score > median) {
+      excess += score - median;
+      above += 1.0;
+    }
+  const double beyond = -std::log((static_cast<double>(healthy.size()) + 1.0) * false_alarms);
+  return above > 0.0 && std::isfinite(excess) ? most + excess / above * beyond : most;
 }
 
 TrialFindings trial_findings(const Study& trial, std::size_t method, const RecordRange& records,

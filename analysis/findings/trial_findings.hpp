@@ -15,8 +15,7 @@ inline constexpr double kTrialFalseAlarms = 0.02;
 /// How far to trust an answer on a record: the answers of the same method on simulated loops like it
 /// (analysis/study_files/recorded_study.hpp), whose truth is known.
 struct TrialFindings {
-  /// The conformal threshold of the scores of the loops without a fault at kTrialFalseAlarms; with too few of
-  /// them the largest score. NaN without such loops.
+  /// trial_threshold() of the scores of the loops without a fault.
   double threshold;
   /// The same of every second loop without a fault, from the first and from the second one on.
   std::array<double, 2> of_half;
@@ -36,8 +35,12 @@ struct TrialFindings {
 TrialFindings trial_findings(const Study& trial, std::size_t method, const RecordRange& records,
                              const AssessmentRecord& said);
 
-/// The conformal threshold of scores of loops without a fault at `false_alarms`; with too few of them the
-/// largest score. NaN without scores.
+/// The threshold of n scores s of loops without a fault at `false_alarms` = a: the conformal one, or, with too
+/// few of them, that of a tail above their median which is exponential,
+///
+///   t = max s + b log(1 / ((n + 1) a)),   b the mean excess over the median of the scores above it
+///
+/// NaN without scores.
 double trial_threshold(const std::vector<double>& healthy, double false_alarms = kTrialFalseAlarms);
 
 }  // namespace mpm
