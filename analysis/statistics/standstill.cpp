@@ -2,37 +2,69 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "base/non_finite.hpp"
 
 namespace mpm {
+namespace {
 
-Standstill longest_standstill(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
-  Standstill longest;
-  Eigen::Index most = 0, present = 0, equal = 0;  // values of the longest stretch, values, equal neighbours
-  Eigen::Index first = 0, run = 0, last = -1;     // the stretch at hand, and the last value
+/// A stretch of equal values, and how many are there: samples between them may be missing.
+struct EqualValues {
+  Eigen::Index first, end, count;
+
+  Eigen::Index length() const { return end - first; }
+};
+
+std::vector<EqualValues> equal_values(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
+  std::vector<EqualValues> stretches;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     if (std::isnan(values(k)))
       continue;
-    const bool goes_on = last >= 0 && values(k) == values(last);
-    equal += goes_on ? 1 : 0;
-    first = goes_on ? first : k;
-    run = goes_on ? run + 1 : 1;
-    last = k;
-    ++present;
-    if (run > most) {
-      most = run;
-      longest.first = first;
-      longest.end = k + 1;
-    }
+    if (stretches.empty() || values(k) != values(stretches.back().first))
+      stretches.push_back({k, k, 0});
+    stretches.back().end = k + 1;
+    ++stretches.back().count;
   }
-  if (most == 0)
-    return longest;
+  return stretches;
+}
+
+/// N p^(n - 1).
+double chance_of(Eigen::Index samples, double p, Eigen::Index count) {
+  return static_cast<double>(samples) * std::pow(p, static_cast<double>(count - 1));
+}
+
+}  // namespace
+
+Standstill longest_standstill(const Eigen::Ref<const Eigen::RowVectorXd>& values) {
+  const std::vector<EqualValues> stretches = equal_values(values);
+  const auto longest =
+      std::max_element(stretches.begin(), stretches.end(),
+                       [](const EqualValues& a, const EqualValues& b) { return a.count < b.count; });
+  if (longest == stretches.end())
+    return {};
   // A stretch has one neighbour fewer than values; those at its two ends differ.
-  const auto equal_outside = static_cast<double>(equal - (most - 1));
-  const auto neighbours_outside = static_cast<double>(std::max<Eigen::Index>(0, present - most));
-  const double p = (equal_outside + 1.0) / (neighbours_outside + 2.0);
-  longest.chance =
-      std::min(1.0, static_cast<double>(values.size()) * std::pow(p, static_cast<double>(most - 1)));
-  return longest;
+  double equal = 0.0, neighbours = 0.0;
+  for (const EqualValues& each : stretches)
+    if (each.first != longest->first) {
+      equal += static_cast<double>(each.count - 1);
+      neighbours += static_cast<double>(each.count);
+    }
+  const double p = (equal + 1.0) / (neighbours + 2.0);
+  return {longest->first, longest->end, std::min(1.0, chance_of(values.size(), p, longest->count))};
+}
+
+Eigen::RowVectorXd without_standstills(Eigen::RowVectorXd values) {
+  constexpr double kNoChance = 0.05;
+  const std::vector<EqualValues> stretches = equal_values(values);
+  const auto standing = std::count_if(stretches.begin(), stretches.end(),
+                                      [](const EqualValues& each) { return each.count > 1; });
+  const double p = (static_cast<double>(standing) + 1.0) / (static_cast<double>(stretches.size()) + 2.0);
+  for (const EqualValues& each : stretches)
+    if (chance_of(values.size(), p, each.count) < kNoChance &&
+        !is_long({each.first, each.end}, values.size()))
+      values.segment(each.first + 1, each.length() - 1).setConstant(kNaN);
+  return values;
 }
 
 bool is_long(const Standstill& stretch, Eigen::Index samples) {

@@ -22,6 +22,12 @@ struct Standstill {
 /// |        | values | N     | any  |
 Standstill longest_standstill(const Eigen::Ref<const Eigen::RowVectorXd>& values);
 
+/// The signal without what stands in it for a while though it does not elsewhere, such as bad values in whose
+/// place the last good one was kept: NaN but for the first value of each stretch of n equal ones with
+/// N p^(n - 1) < 0.05, p the share of stretches that have more than one value, (such stretches + 1) /
+/// (stretches + 2). What is_long() stays: a frozen instrument is no bad value.
+Eigen::RowVectorXd without_standstills(Eigen::RowVectorXd values);
+
 /// Is this stretch one of an instrument that may be frozen: 20 samples and a tenth of the signal?
 bool is_long(const Standstill& stretch, Eigen::Index samples);
 

@@ -14,6 +14,7 @@
 #include "analysis/methods/ours/disturbance_scan.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "analysis/statistics/chi_squared.hpp"
+#include "analysis/statistics/standstill.hpp"
 #include "base/non_finite.hpp"
 #include "scenarios/loop/record_rows.hpp"
 
@@ -122,13 +123,14 @@ Eigen::VectorXd bounded_mean(const Eigen::VectorXd& mean, const Eigen::MatrixXd&
   return bounded;
 }
 
-/// y of the window, from rows that are early by some samples.
+/// y of the window where it is no bad value, from rows that are early by some samples.
 Eigen::RowVectorXd y_at_samples(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index early) {
   if (early == 0)
-    return loop.y.row(cv);
+    return without_standstills(loop.y.row(cv));
   const AssessedLoop& whole = loop.from_start();
-  return rows_of({OutputSampling::snapshot, -static_cast<double>(early)}, whole.y.row(cv), whole.samples())
-      .segment(loop.first, loop.samples());
+  return without_standstills(
+      rows_of({OutputSampling::snapshot, -static_cast<double>(early)}, whole.y.row(cv), whole.samples())
+          .segment(loop.first, loop.samples()));
 }
 
 }  // namespace
@@ -461,28 +463,35 @@ Eigen::RowVectorXd LearntModel::errors(const AssessedLoop& loop, Eigen::Index cv
   return errors_in_window(loop, cv, early_);
 }
 
+Eigen::MatrixXd LearntModel::series(const AssessedLoop& loop, Eigen::Index cv) const {
+  const AssessedLoop& whole = loop.from_start();
+  const Eigen::MatrixXd inputs = model_inputs(whole);
+  const ModelErrors& errors = of(cv);
+  const Eigen::RowVectorXd correction = errors.correction(inputs, initial_);
+  // Not what wanders: free in each record, it would take a part of every mismatch.
+  const Eigen::MatrixXd Z = errors.directions(errors.slopes(inputs, initial_).topRows(errors.count()));
+  Eigen::MatrixXd series(1 + Z.rows(), whole.samples());
+  series.row(0).setConstant(kNaN);
+  series.block(0, loop.first, 1, loop.samples()) = without_outliers(
+      y_at_samples(loop, cv, early_) - loop.y_sim.row(cv) - correction.segment(loop.first, loop.samples()));
+  series.bottomRows(Z.rows()) = errors.noise().deviation * Z;
+  return series;
+}
+
 /// ny x N of the record; the samples of the window alone say what is most probable.
 Eigen::MatrixXd LearntModel::explained(const AssessedLoop& loop) const {
   const AssessedLoop& whole = loop.from_start();
   const Eigen::MatrixXd inputs = model_inputs(whole);
-  // Not what wanders: free in each record, it would take a part of every mismatch.
   Eigen::MatrixXd sum(whole.y.rows(), whole.samples());
   for (Eigen::Index cv = 0; cv < sum.rows(); ++cv) {
-    const ModelErrors& errors = of(cv);
-    sum.row(cv) = errors.correction(inputs, initial_);
-    const Eigen::MatrixXd Z = errors.directions(errors.slopes(inputs, initial_).topRows(errors.count()));
-    Eigen::MatrixXd series(1 + Z.rows(), whole.samples());
-    series.row(0).setConstant(kNaN);
-    series.block(0, loop.first, 1, loop.samples()) = without_outliers(
-        y_at_samples(loop, cv, early_) - loop.y_sim.row(cv) - sum.block(cv, loop.first, 1, loop.samples()));
-    series.bottomRows(Z.rows()) = errors.noise().deviation * Z;
-    if (Z.rows() == 0 || (!series.row(0).array().isNaN()).count() < kFewestNoiseSamples)
+    sum.row(cv) = of(cv).correction(inputs, initial_);
+    const Eigen::MatrixXd own = series(loop, cv);
+    const auto unknown = own.bottomRows(own.rows() - 1);
+    if (unknown.rows() == 0 || (!own.row(0).array().isNaN()).count() < kFewestNoiseSamples)
       continue;
     // Under the noise that this record shows, so that a disturbance is not taken for errors of the model.
-    const BaseNoise noise =
-        noise_posterior(series.row(0), series.bottomRows(Z.rows()), least_noise(whole.y_sim.row(cv))).best;
-    const Eigen::VectorXd z = coefficients(noise, series).mean;
-    sum.row(cv) += z.transpose() * series.bottomRows(Z.rows());
+    const BaseNoise noise = noise_posterior(own.row(0), unknown, least_noise(whole.y_sim.row(cv))).best;
+    sum.row(cv) += coefficients(noise, own).mean.transpose() * unknown;
   }
   return sum;
 }

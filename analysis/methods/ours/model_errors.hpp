@@ -156,6 +156,9 @@ class LearntModel final : public ModelCorrection {
   double late() const { return late_; }
   /// errors_in_window() with the rows of the CV at the samples of the model.
   Eigen::RowVectorXd errors(const AssessedLoop& loop, Eigen::Index cv) const;
+  /// errors() of the CV in the record less their correction, and below them what is still unknown of the
+  /// model but for what wanders, (1 + q) x N in CV units: row 0 is Z' z and noise, z ~ N(0, I).
+  Eigen::MatrixXd series(const AssessedLoop& loop, Eigen::Index cv) const;
   /// The first CV whose benchmark rejects an exact model, which one of another clock does; none if no
   /// benchmark does.
   std::optional<Eigen::Index> rejects_exact_model() const;
@@ -182,8 +185,9 @@ class LearntModel final : public ModelCorrection {
   std::vector<ModelErrors> cvs_;
 };
 
-/// y - y_sim of a CV over the whole record, NaN outside of the window and where a sample is an outlier. Rows
-/// of y that are `early` by some samples are shifted back.
+/// y - y_sim of a CV over the whole record, NaN outside of the window, where a sample is an outlier, and
+/// where y stands as if a bad value were kept (without_standstills()). Rows of y that are `early` by some
+/// samples are shifted back.
 Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index early = 0);
 
 /// The deviation below which the simulation errors of a CV are rounding of its outputs.
