@@ -9,7 +9,7 @@
 #include <Eigen/QR>
 
 #include "analysis/methods/ours/base_noise.hpp"
-#include "analysis/records/coloured_noise.hpp"
+#include "analysis/methods/ours/coloured_noise.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/statistics/sample_spacing.hpp"
 #include "analysis/statistics/signal_check.hpp"

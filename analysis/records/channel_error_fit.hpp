@@ -58,7 +58,7 @@ PartialErrorFit fit_of(const ChannelErrorSums& sums, double noise);
 ///   e = X a + n,   n(k) = sum_l a_l n(k - l) + w(k),   w ~ N(0, variance)
 ///
 /// with X a as ChannelErrorFit has it, and n an autoregression of order 3
-/// (analysis/records/coloured_noise.hpp).
+/// (analysis/methods/ours/coloured_noise.hpp).
 struct NoiseHabit {
   Eigen::VectorXd errors = {};  ///< the most likely a of the period
   Eigen::VectorXd autoregression;

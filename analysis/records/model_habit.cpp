@@ -8,7 +8,7 @@
 
 #include "analysis/methods/ours/base_noise.hpp"
 #include "analysis/records/channel_health.hpp"
-#include "analysis/records/coloured_noise.hpp"
+#include "analysis/methods/ours/coloured_noise.hpp"
 
 namespace mpm {
 namespace {

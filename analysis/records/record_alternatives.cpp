@@ -5,15 +5,17 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "analysis/methods/ours/cv_errors.hpp"
+#include "analysis/methods/ours/likely_mismatch.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
 #include "analysis/records/channel_error_fit.hpp"
-#include "analysis/records/cv_errors.hpp"
 #include "base/non_finite.hpp"
 #include "plants/linear/zero_order_hold.hpp"
 #include "scenarios/faults/fault.hpp"
@@ -32,8 +34,7 @@ Columns moves_of(const Study& study, const AssessedLoop& loop, Eigen::Index cv) 
     const TransferFunction channel = study.assessed_channel(cv, place);
     if (channel.is_zero())
       continue;
-    const Eigen::RowVectorXd u =
-        place < study.mv_count() ? loop.u.row(place) : loop.d.row(place - study.mv_count());
+    const Eigen::RowVectorXd u = input_of(study, loop, place);
     const auto dead = static_cast<Eigen::Index>(channel.dead_time() / study.controller.sample_time);
     for (Eigen::Index lag = dead + 1; lag <= dead + kLags; ++lag) {
       Eigen::VectorXd moves = Eigen::VectorXd::Zero(N);
@@ -65,7 +66,7 @@ class Comparison {
     const ChannelErrorFits fits(study, delta);
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
       const ChannelErrorFit fit = fits.of(loop, cv);
-      cvs_.emplace_back(loop, fit, cv);
+      cvs_.emplace_back(loop, cv, fit.samples, fit.e, fit.X);
       cvs_.back().find_change(onset_);
       none_ += cvs_.back().none();
     }
@@ -165,7 +166,7 @@ class Comparison {
     std::vector<Eigen::RowVectorXd> all;
     for (Eigen::Index place = 0; place < study_.mv_count() + study_.md_count(); ++place)
       if (const TransferFunction channel = study_.assessed_channel(cv, place); !channel.is_zero())
-        all.push_back(late_by(response(channel, input(place)), late));
+        all.push_back(late_by(response_of(study_, channel, input_of(study_, loop_, place)), late));
     Columns columns(loop_.samples(), static_cast<Eigen::Index>(all.size()));
     for (std::size_t place = 0; place < all.size(); ++place)
       columns.col(static_cast<Eigen::Index>(place)) = all[place].transpose();
@@ -173,27 +174,13 @@ class Comparison {
   }
 
   const CvErrors& of(Eigen::Index cv) const { return cvs_[static_cast<std::size_t>(cv)]; }
-  /// N of the loop: the response of a channel to one input, from the onset on.
-  Eigen::RowVectorXd response(const TransferFunction& channel, const Eigen::RowVectorXd& x) const {
-    return channel_response(discretise(channel, study_.controller.sample_time), x, x(0));
-  }
-  Eigen::RowVectorXd input(Eigen::Index place) const {
-    return place < study_.mv_count() ? loop_.u.row(place) : loop_.d.row(place - study_.mv_count());
-  }
 
-  /// A mismatch of one parameter of the channel of an input, and by how much it is likelier than none.
-  struct LikelyMismatch {
-    Eigen::Index place = -1;
-    MismatchParameter parameter = MismatchParameter::gain;
-    double gain = -kInfinity;
-  };
-
-  /// The best one of a CV.
   LikelyMismatch mismatch(Eigen::Index cv) const {
-    LikelyMismatch best;
+    double channels = 0.0;
     for (Eigen::Index place = 0; place < study_.mv_count() + study_.md_count(); ++place)
-      if (const LikelyMismatch here = of_channel(cv, place); here.gain > best.gain)
-        best = here;
+      channels += study_.assessed_channel(cv, place).is_zero() ? 0.0 : 1.0;
+    LikelyMismatch best = likely_mismatch(study_, loop_, of(cv), cv, onset_);
+    best.gain -= std::log(std::max(1.0, channels));
     return best;
   }
 
@@ -213,36 +200,6 @@ class Comparison {
     found.mismatch = none_ + (most > 0.0 ? sum : most);
   }
 
-  LikelyMismatch of_channel(Eigen::Index cv, Eigen::Index place) const {
-    constexpr double kTimes[] = {0.35, 0.5, 0.7, 1.4, 2.0, 2.8};
-    constexpr double kShifts[] = {-3.0, -2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0};
-    LikelyMismatch best{.place = place};
-    const TransferFunction channel = study_.assessed_channel(cv, place);
-    if (channel.is_zero())
-      return best;
-    const double parameters = onset_ > 0 ? 3.0 : 2.0,
-                 none = of(cv).none() + 0.5 * parameters * of(cv).log_samples();
-    const Eigen::RowVectorXd u = input(place), nominal = response(channel, u);
-    const auto masked = [this](Eigen::RowVectorXd h) {
-      h.head(onset_).setZero();
-      return h;
-    };
-    best.gain = of(cv).with(masked(nominal).transpose()) - none;
-    const auto take = [&](MismatchParameter parameter, double size) {
-      const TransferFunction other =
-          with_mismatches(TransferMatrix{{channel}}, {{0, 0, parameter, size}})(0, 0);
-      const double gain = of(cv).without(masked(response(other, u) - nominal)) - none;
-      if (gain > best.gain)
-        best = {place, parameter, gain};
-    };
-    for (const double factor : kTimes)
-      take(MismatchParameter::time_constant, factor);
-    for (const double shift : kShifts)
-      if (const double time = shift * study_.controller.sample_time; channel.dead_time() + time >= 0.0)
-        take(MismatchParameter::dead_time, time);
-    return best;
-  }
-
   void data(RecordAlternatives& found) const {
     constexpr double kLate[] = {-2.0, -1.5, -1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0};
     found.data = -kInfinity;
@@ -253,35 +210,60 @@ class Comparison {
         found.data_cv = cv;
       }
     };
+    const double members = std::log(1.0 + static_cast<double>(loop_.y.rows()));
     for (const double late : kLate) {
-      double sum = 0.0, samples = 0.0;
+      double sum = -members, samples = 0.0;
       for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
         const Eigen::RowVectorXd y_sim = loop_.y_sim.row(cv);
         const double here = of(cv).without(late_by(y_sim, late) - y_sim);
         sum += here;
         samples = std::max(samples, of(cv).log_samples());
         if (loop_.y.rows() > 1)
-          take(none_ - of(cv).none() + here - of(cv).log_samples(), late, cv);
+          take(none_ - of(cv).none() + here - of(cv).log_samples() - members, late, cv);
       }
       take(sum - 0.5 * samples, late, -1);
     }
   }
 
   void sensor(RecordAlternatives& found) {
-    constexpr Eigen::Index kStarts = 12;
+    constexpr Eigen::Index kRamps = 12, kSteps = 24;
     found.sensor = -kInfinity;
     const Eigen::Index N = loop_.samples();
-    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv)
-      for (Eigen::Index start = 0; start < kStarts; ++start) {
-        Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(N, 0.0, 1.0);
-        ramp = (ramp.array() - static_cast<double>(start) / kStarts).max(0.0);
-        const double here = none_ - of(cv).none() + of(cv).with(ramp) - of(cv).log_samples();
+    const double members = std::log(2.0 * static_cast<double>(loop_.y.rows()));
+    for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
+      Eigen::Index at = 0;
+      double most = -kInfinity;  // of a step of this CV, at this sample
+      const auto take = [&](const Eigen::VectorXd& h, bool jumps) {
+        const double here = none_ - of(cv).none() + of(cv).with(h) - of(cv).log_samples() - members;
         if (here > found.sensor) {
           found.sensor = here;
           found.sensor_cv = cv;
-          drift_ = ramp;
+          found.sensor_jumps = jumps;
+          drift_ = h;
         }
+        return here;
+      };
+      const auto take_step = [&](Eigen::Index sample) {
+        if (sample < 1 || sample >= N)
+          return;
+        Eigen::VectorXd step = Eigen::VectorXd::Zero(N);
+        step.tail(N - sample).setOnes();
+        if (const double here = take(step, true); here > most) {
+          most = here;
+          at = sample;
+        }
+      };
+      for (Eigen::Index ramp = 0; ramp < kRamps; ++ramp)
+        take((Eigen::ArrayXd::LinSpaced(N, 0.0, 1.0) - static_cast<double>(ramp) / kRamps).max(0.0).matrix(),
+             false);
+      for (Eigen::Index step = 1; step < kSteps; ++step)
+        take_step(step * N / kSteps);
+      for (Eigen::Index reach = N / kSteps / 2; reach > 0; reach /= 2) {
+        const Eigen::Index centre = at;
+        take_step(centre - reach);
+        take_step(centre + reach);
       }
+    }
   }
 
   /// L of a valve of this MV whose position is x.
@@ -303,6 +285,7 @@ class Comparison {
     constexpr double kCloser[] = {0.84, 0.92, 1.08, 1.18};
     constexpr double kTriedJumps[] = {0.0, 0.3, 0.6, 1.0};
     found.valve = -kInfinity;
+    const double members = std::log(static_cast<double>((1 + std::size(kTriedJumps)) * study_.mv_count()));
     for (Eigen::Index mv = 0; mv < study_.mv_count(); ++mv) {
       const Eigen::RowVectorXd u = loop_.u.row(mv);
       const double range = u.maxCoeff() - u.minCoeff();
@@ -317,7 +300,7 @@ class Comparison {
       for (const ValveModel& valve : valves) {
         double best = -kInfinity, band = 0.0;
         const auto take = [&](double size) {
-          if (const double here = of_valve(mv, valve(size)); here > best) {
+          if (const double here = of_valve(mv, valve(size)) - members; here > best) {
             best = here;
             band = size;
           }
@@ -356,7 +339,7 @@ RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& l
 
 double input_dependence(const Study& study, const AssessedLoop& loop, const ChannelErrorFit& fit,
                         Eigen::Index cv) {
-  return CvErrors(loop, fit, cv)
+  return CvErrors(loop, cv, fit.samples, fit.e, fit.X)
       .dependence(loop, Eigen::RowVectorXd::Zero(loop.samples()), Columns(loop.samples(), 0),
                   moves_of(study, loop, cv));
 }

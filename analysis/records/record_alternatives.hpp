@@ -13,17 +13,11 @@
 
 namespace mpm {
 
-/// How well each sort of fault explains the simulation errors of a record, on one scale. With e_i = y - y_sim
-/// of CV i without what no record can tell (AssessedLoop::untold), X_i the responses to errors of a healthy
-/// model (ChannelErrorFit), E_i the errors of the other CVs in up to six samples before (those above i also
-/// in the same sample), and n an autoregression of order 6,
-///
-///   e_i = h_i + X_i a_i + E_i b_i + n_i,   a_i ~ N(0, I),   b_i of any size
-///   L = sum_i (-N/2 log s_i^2 - |a_i|^2 / 2) - k/2 log N
-///
-/// s_i^2 the mean square of the innovations, k the parameters of the hypothesis (Schwarz 1978). The slow part
-/// of n is a disturbance, which may be there in each of them; E_i has one that reaches several CVs, such as
-/// that of an MV. From some sample of each CV on, the same for all hypotheses, n may be another
+/// How well each sort of fault explains the simulation errors of a record, on one scale: the sum of the L of
+/// all CVs (CvErrors, of y - y_sim without what no record can tell, AssessedLoop::untold), less k/2 log N for
+/// the k parameters of the hypothesis h (Schwarz 1978) and less log m for the m channels, CVs, or MVs and
+/// valve models that it may be of. The slow part of n is a disturbance, which may be
+/// there in each of them. From some sample of each CV on, the same for all hypotheses, n may be another
 /// autoregression, where that brings more than its k/2 log N.
 ///
 /// | hypothesis  | h                                                                                        |
@@ -31,7 +25,7 @@ namespace mpm {
 /// | disturbance | none                                                                                     |
 /// | mismatch    | of one channel of each CV: another gain, time constant or dead time, from the onset on   |
 /// | data        | y is s samples late against the inputs, in one CV or in all: y_sim(k) - y_sim(k - s)     |
-/// | sensor      | a ramp in y of one CV from some sample on: of its sensor, or of a disturbance on it      |
+/// | sensor      | a ramp or a step in y of one CV from some sample on: of its sensor, or of a disturbance  |
 /// | valve       | of one MV: the responses to x - u, x of a StickyValve, or of a FrictionValve without     |
 /// |             | kinetic friction                                                                         |
 struct RecordAlternatives {
@@ -39,6 +33,7 @@ struct RecordAlternatives {
   Eigen::Index data_cv = -1;                                                        ///< -1: all CVs
   double late = 0.0;                                                                ///< s
   Eigen::Index sensor_cv = -1, valve_mv = -1;
+  bool sensor_jumps = false;                ///< h of `sensor` is a step
   std::optional<NamedMismatch> named = {};  ///< the most likely mismatch, without a size; none: that of an MD
   OfSources fit = {};  ///< the largest input_dependence() of a CV where this is taken off; none of a mismatch
 };

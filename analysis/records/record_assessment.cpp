@@ -282,6 +282,7 @@ void add_sources(const RecordFrame& frame, RecordAssessment& assessment, Verdict
         with_alternatives(evidence.weights, alternatives, assessment.trial ? assessment.trial->fit : kNaN);
     evidence.weights = weights.of;
     evidence.drift = weights.drift;
+    evidence.jumps = alternatives.sensor_jumps;
     evidence.likeliest = alternatives.named;
     evidence.valve_mv = alternatives.valve_mv;
     evidence.sensor_cv = alternatives.sensor_cv;

@@ -115,8 +115,10 @@ RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::ve
     model.mismatch = evidence.mismatch;
   if (model.source == RecordSource::valve)
     model.valve_mv = evidence.valve_mv;
-  if (model.source == RecordSource::sensor || model.drifts)
+  if (model.source == RecordSource::sensor || model.drifts) {
     model.sensor_cv = evidence.sensor_cv;
+    model.jumps = evidence.jumps;
+  }
   if (model.source == RecordSource::sensor)
     model.stuck = evidence.stuck;
   if (model.source == RecordSource::data && !evidence.late_is_corrected) {

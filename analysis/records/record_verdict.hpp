@@ -145,6 +145,7 @@ struct VerdictEvidence {
   /// Posterior of the sources, given that there is one; need not sum to 1.
   OfSources weights = {};
   double drift = 0.0;  ///< SourceWeights::drift, of `sensor_cv`
+  bool jumps = false;  ///< it is a step
   /// Where `sensor_cv` shows one value that chance does not make: then its sensor has all of the weights.
   std::optional<Standstill> stuck = {};
   std::optional<NamedMismatch> mismatch = {};   ///< what is wrong with the model
@@ -170,6 +171,7 @@ struct RecordVerdict {
     /// The most probable one of a model that fails; of a CV that drifts the more probable one of its two.
     RecordSource source = RecordSource::nothing;
     bool drifts = false;  ///< `sensor_cv` does, by its sensor or by a disturbance: the record cannot tell
+    bool jumps = false;   ///< once, where it drifts or its sensor does
     std::optional<Standstill> stuck = {};  ///< of the source `sensor`: where `sensor_cv` shows one value
     std::optional<NamedMismatch> mismatch = {};   ///< of a source with a mismatch
     Eigen::Index valve_mv = -1, sensor_cv = -1;   ///< of these sources, and of a drift

@@ -213,6 +213,7 @@ Json model_json(const RecordAssessment& of) {
                                 : Json()},
           {"source", to_string(model.source)},
           {"drift", model.drifts && model.sensor_cv >= 0 ? Json(cv_name(of.study, model.sensor_cv)) : Json()},
+          {"jumps", model.jumps},
           {"stuck", model.stuck ? Json{{"cv", cv_name(of.study, model.sensor_cv)},
                                        {"from", stamp(model.stuck->first)},
                                        {"to", stamp(model.stuck->end - 1)}}

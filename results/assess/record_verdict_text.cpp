@@ -76,9 +76,10 @@ class VerdictWriter {
                                           : fmt::format("a channel of {} is not that of the model", at);
     if (model.drifts)
       return fmt::format(
-          "{} drifts away from the model, by its sensor or by an unmeasured disturbance that grows: the loop "
+          "{} {} away from the model, by its sensor or by an unmeasured disturbance that {}: the loop "
           "cannot tell which",
-          model.sensor_cv < 0 ? at : cv(model.sensor_cv));
+          model.sensor_cv < 0 ? at : cv(model.sensor_cv), model.jumps ? "jumps" : "drifts",
+          model.jumps ? "stays" : "grows");
     switch (model.source) {
       case RecordSource::mismatch:
         return mismatch;
@@ -90,7 +91,7 @@ class VerdictWriter {
         const std::string sensor = model.sensor_cv < 0 ? at : cv(model.sensor_cv);
         return model.stuck ? fmt::format("the sensor of {} is stuck: it shows one value from {} to {}",
                                          sensor, stamp(model.stuck->first), stamp(model.stuck->end - 1))
-                           : fmt::format("the sensor of {} drifts away", sensor);
+                           : fmt::format("the sensor of {} {} away", sensor, model.jumps ? "jumps" : "drifts");
       }
       case RecordSource::valve:
         return fmt::format("the valve of {} sticks", mv(model.valve_mv));

@@ -1,4 +1,4 @@
-#include "analysis/records/coloured_noise.hpp"
+#include "analysis/methods/ours/coloured_noise.hpp"
 
 #include <Eigen/Cholesky>
 

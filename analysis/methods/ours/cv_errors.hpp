@@ -8,9 +8,8 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessed_loop.hpp"
-#include "analysis/records/channel_error_fit.hpp"
 
-// The simulation errors of one CV of a plant's record, and the noise that nobody knows.
+// The simulation errors of one CV, and a noise that nobody knows.
 
 namespace mpm {
 
@@ -64,11 +63,21 @@ class LaggedProducts {
   std::array<Columns, static_cast<std::size_t>(kLags* kLags)> products_;
 };
 
-/// One CV: its errors, and its part of L under a hypothesis (RecordAlternatives has the equations). From some
-/// sample on the noise may be another one.
+/// The errors e of CV i over the n samples that are there, and how likely they are under a hypothesis h:
+///
+///   e = h + X a + E_i b + n,   a ~ N(0, I),   b of any size
+///   L = -n/2 log s^2 - |a|^2 / 2
+///
+/// with X the responses to errors of a healthy model, E_i the errors of the other CVs in up to six samples
+/// before (those above i also in the same sample), which have a disturbance that reaches several CVs, n an
+/// autoregression of the order kErrorOrder, which has one of any shape, and s^2 the mean square of its
+/// innovations. From some sample on n may be another autoregression.
 class CvErrors {
  public:
-  CvErrors(const AssessedLoop& loop, const ChannelErrorFit& fit, Eigen::Index cv);
+  /// `samples` of the loop, e (n) at them, and X (n x p, or empty). The errors of the other CVs are those of
+  /// the loop.
+  CvErrors(const AssessedLoop& loop, Eigen::Index cv, std::vector<Eigen::Index> samples,
+           const Eigen::VectorXd& e, const Columns& X);
 
   /// Lets the noise be another one from the best of some samples on, or from `onset` on, where that explains
   /// the errors better.

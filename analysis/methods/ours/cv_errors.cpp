@@ -1,11 +1,12 @@
-#include "analysis/records/cv_errors.hpp"
+#include "analysis/methods/ours/cv_errors.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-#include "analysis/records/coloured_noise.hpp"
+#include "analysis/methods/ours/coloured_noise.hpp"
 #include "analysis/statistics/chi_squared.hpp"
 #include "base/non_finite.hpp"
 
@@ -83,13 +84,14 @@ struct NoisePart {
 
 }  // namespace
 
-CvErrors::CvErrors(const AssessedLoop& loop, const ChannelErrorFit& fit, Eigen::Index cv)
-    : samples_(fit.samples) {
-  const Columns others = others_errors(loop, cv, fit.e.size());
-  const Eigen::Index p = fit.X.size() == 0 ? 0 : fit.X.cols();
-  X_.resize(fit.e.size(), p + others.cols());
+CvErrors::CvErrors(const AssessedLoop& loop, Eigen::Index cv, std::vector<Eigen::Index> samples,
+                   const Eigen::VectorXd& e, const Columns& X)
+    : samples_(std::move(samples)) {
+  const Columns others = others_errors(loop, cv, e.size());
+  const Eigen::Index p = X.size() == 0 ? 0 : X.cols();
+  X_.resize(e.size(), p + others.cols());
   if (p > 0)
-    X_.leftCols(p) = fit.X;
+    X_.leftCols(p) = X;
   X_.rightCols(others.cols()) = others(samples_, Eigen::all);
   prior_ = Eigen::VectorXd::Zero(X_.cols());
   prior_.head(p).setOnes();
@@ -97,7 +99,7 @@ CvErrors::CvErrors(const AssessedLoop& loop, const ChannelErrorFit& fit, Eigen::
     const Columns untold = loop.untold[static_cast<std::size_t>(cv)](Eigen::all, samples_).transpose();
     Q_ = basis_of(untold);
   }
-  e_ = told(fit.e);
+  e_ = told(e);
   divide(e_.size());
 }
 
