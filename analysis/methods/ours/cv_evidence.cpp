@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "analysis/methods/ours/any_shape.hpp"
 #include "analysis/methods/ours/growing_mismatch.hpp"
 #include "analysis/statistics/best_candidate.hpp"
 #include "base/non_finite.hpp"
@@ -523,6 +524,25 @@ void CvLikelihood::add_growing(const Eigen::Ref<const Eigen::MatrixXd>& series,
     add(evidence.mismatch_alone[found.mismatch], {size, found.best_size, found.log_likelihood});
   }
   evidence.mpm = sum_of(evidence.mismatch_alone);
+}
+
+void CvLikelihood::add_any_shape(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                 const Eigen::Ref<const Eigen::VectorXd>& initial, double share,
+                                 CvEvidence& evidence) const {
+  const std::vector<Eigen::MatrixXd> channels = any_shape_rows(responses_, inputs, initial);
+  Eigen::MatrixXd all = series, gains = series;
+  const double third = std::log(share / 3.0);
+  double sum = -kInfinity;
+  for (const Eigen::MatrixXd& channel : channels) {
+    const Eigen::MatrixXd rows = channel / model_.noise().deviation;
+    sum = log_sum(sum, third - std::log(static_cast<double>(channels.size())) +
+                           healthy_evidence(RecordNoises::stacked(series, rows)));
+    all = RecordNoises::stacked(all, rows);
+    gains = RecordNoises::stacked(gains, rows.topRows(1));
+  }
+  sum = log_sum(sum, third + log_sum(healthy_evidence(all), healthy_evidence(gains)));
+  evidence.mpm = log_sum(evidence.mpm, sum);
 }
 
 }  // namespace mpm

@@ -93,6 +93,13 @@ class CvLikelihood {
                    const Eigen::Ref<const Eigen::VectorXd>& initial,
                    const Eigen::Ref<const Eigen::MatrixXd>& untold, double share, CvEvidence& evidence) const;
 
+  /// Adds to the evidence of mismatches that of any_shape_rows() with coefficients ~ N(0, 1), of one channel
+  /// or of all, which are so probable among them as `share`. `series` as above.
+  void add_any_shape(const Eigen::Ref<const Eigen::MatrixXd>& series,
+                     const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                     const Eigen::Ref<const Eigen::VectorXd>& initial, double share,
+                     CvEvidence& evidence) const;
+
  private:
   /// ModelErrors::slopes(), and below them what is untold.
   Eigen::MatrixXd slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,

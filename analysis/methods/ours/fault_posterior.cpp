@@ -145,7 +145,8 @@ std::vector<ModelErrors> learnt_models(const AssessmentContext& context, FaultPr
     if (drawn && noise_is_known(study))
       known = {study.simulation.noise_standard_deviation(cv), study.simulation.noise.autocorrelation};
     const double least = least_noise(benchmark.y_sim.row(cv));
-    const Eigen::RowVectorXd e = without_outliers(benchmark.y.row(cv) - benchmark.y_sim.row(cv));
+    const Eigen::RowVectorXd e =
+        without_outliers(without_standstills(benchmark.y.row(cv)) - benchmark.y_sim.row(cv));
     const ModelErrorPrior errors = drawn ? drawn_errors(study, cv) : ModelErrorPrior{};
     if (learnt)
       models.push_back(learnt->of(cv));
@@ -349,9 +350,12 @@ class FaultPosterior final : public AssessmentMethod {
         known_->of(i).add_growing(series[i], inputs.leftCols(series[i].cols()), initial_,
                                   untold_of(loop, static_cast<Eigen::Index>(i), series[i].cols()),
                                   kGrowingShare, evidence[i]);
-        if (asks_instruments)
-          evidence[i].sensor = sensor_evidence(loop, i, series, whitened);
+        if (probabilities.cvs[i].mpm < 1.0 - kSuspect)
+          known_->of(i).add_any_shape(series[i], inputs.leftCols(series[i].cols()), initial_, kAnyShapeShare,
+                                      evidence[i]);
       }
+    if (asks_instruments)
+      ask_sensors(loop, probabilities, series, whitened, evidence);
     probabilities = with_sticky_valve(
         with_input_disturbance(fault_probabilities(known_->priors(), evidence), of_inputs.disturbance),
         of_inputs.valve);
@@ -468,25 +472,48 @@ class FaultPosterior final : public AssessmentMethod {
     return sum;
   }
 
-  /// log of the probability of the errors of a CV whose sensor has a bias or a drift, or is stuck.
-  double sensor_evidence(const AssessedLoop& loop, std::size_t cv, const std::vector<Eigen::MatrixXd>& series,
-                         const std::vector<WhitenedErrors>& whitened) const {
-    const ExplainedErrors fault = best_sensor_error(whitened, cv);
-    const double of_error =
-        fault.is_any() ? evidence_with(fault, cv, series[cv]) - fault.penalty : -kInfinity;
-    const Standstill stretch = longest_standstill(loop.y.row(static_cast<Eigen::Index>(cv)));
-    if (!is_long(stretch, loop.samples()) || !(stretch.chance < kNoChance))
-      return of_error;
-    Eigen::MatrixXd without = series[cv];
-    without.row(0).segment(loop.first + stretch.first, stretch.length()).setConstant(kNaN);
-    if (without.row(0).array().isNaN().all())
-      return of_error;
-    return log_sum(of_error, known_->of(cv).healthy_evidence(without) +
-                                 kOfStuckSample * static_cast<double>(stretch.length()));
+  /// The sensors of the CVs in which something is wrong. A disturbance that steps or ramps looks like a bias
+  /// or a drift (best_sensor_error()). Where several CVs show one it is a disturbance that reaches them,
+  /// since two sensors hardly go wrong in one record.
+  void ask_sensors(const AssessedLoop& loop, const FaultProbabilities& probabilities,
+                   const std::vector<Eigen::MatrixXd>& series, const std::vector<WhitenedErrors>& whitened,
+                   std::vector<CvEvidence>& evidence) const {
+    std::vector<double> of_errors(evidence.size(), -kInfinity);
+    int telling = 0;
+    for (std::size_t i = 0; i < evidence.size(); ++i) {
+      if (!is_suspect(probabilities.cvs[i]))
+        continue;
+      const ExplainedErrors fault = best_sensor_error(whitened, i);
+      if (fault.is_any())
+        of_errors[i] = evidence_with(fault, i, series[i]) - fault.penalty;
+      evidence[i].sensor = stuck_evidence(loop, i, series[i]);
+      telling += of_errors[i] > kTelling + std::max({evidence[i].healthy, evidence[i].mpm, evidence[i].ud,
+                                                     evidence[i].both, evidence[i].sensor})
+                     ? 1
+                     : 0;
+    }
+    for (std::size_t i = 0; i < evidence.size(); ++i) {
+      double& shared = telling > 1 ? evidence[i].ud : evidence[i].sensor;
+      shared = log_sum(shared, of_errors[i]);
+    }
   }
 
-  static constexpr double kGrowingShare = 0.5;  ///< of mismatches that grow, against those that do not
-  static constexpr double kSuspect = 1e-3;      ///< probability from which a CV is looked at more closely
+  /// log of the probability of the errors of a CV whose sensor is stuck.
+  double stuck_evidence(const AssessedLoop& loop, std::size_t cv, Eigen::MatrixXd series) const {
+    const Standstill stretch = longest_standstill(loop.y.row(static_cast<Eigen::Index>(cv)));
+    if (!is_long(stretch, loop.samples()) || !(stretch.chance < kNoChance))
+      return -kInfinity;
+    series.row(0).segment(loop.first + stretch.first, stretch.length()).setConstant(kNaN);
+    if (series.row(0).array().isNaN().all())
+      return -kInfinity;
+    return known_->of(cv).healthy_evidence(series) + kOfStuckSample * static_cast<double>(stretch.length());
+  }
+
+  static constexpr double kGrowingShare = 0.5;   ///< of mismatches that grow, against those that do not
+  static constexpr double kAnyShapeShare = 0.3;  ///< of mismatches in which more than one parameter is wrong
+  static constexpr double kSuspect = 1e-3;       ///< probability from which a CV is looked at more closely
+  /// log of the likelihood of an error of a sensor over all else that may be wrong with its CV.
+  static constexpr double kTelling = 5.0;
   /// A sensor shows one value for so long that chance does not make it (Standstill::chance).
   static constexpr double kNoChance = 1e-6;
   /// log of the density of a sample of a stuck sensor, in deviations of the noise: it is known to a
@@ -654,9 +681,9 @@ const SourceProbabilities& true_sources(FaultSource seen) {
   // none, mpm, ud, mpm_ud, other
   static constexpr std::array<SourceProbabilities, kWords<FaultSource>.size()> kTrue{{
       {0.905, 0.060, 0.010, 0.005, 0.020},
-      {0.060, 0.920, 0.005, 0.005, 0.010},
-      {0.070, 0.015, 0.875, 0.010, 0.030},
-      {0.060, 0.420, 0.370, 0.120, 0.030},
+      {0.030, 0.950, 0.005, 0.005, 0.010},
+      {0.050, 0.010, 0.885, 0.010, 0.045},
+      {0.010, 0.340, 0.250, 0.330, 0.070},
       {0.010, 0.005, 0.020, 0.005, 0.960},
   }};
   return kTrue[static_cast<std::size_t>(seen)];
