@@ -35,8 +35,8 @@ struct TrialFindings {
 TrialFindings trial_findings(const Study& trial, std::size_t method, const RecordRange& records,
                              const AssessmentRecord& said);
 
-/// The threshold of n scores s of loops without a fault at `false_alarms` = a: the conformal one, or, with too
-/// few of them, that of a tail above their median which is exponential,
+/// The threshold of n scores s of loops without a fault at `false_alarms` = a: the conformal one, or, with
+/// too few of them, that of a tail above their median which is exponential,
 ///
 ///   t = max s + b log(1 / ((n + 1) a)),   b the mean excess over the median of the scores above it
 ///

@@ -7,8 +7,8 @@
 #include <Eigen/Cholesky>
 
 #include "analysis/methods/ours/base_noise.hpp"
-#include "analysis/records/channel_health.hpp"
 #include "analysis/methods/ours/coloured_noise.hpp"
+#include "analysis/records/channel_health.hpp"
 
 namespace mpm {
 namespace {

@@ -174,7 +174,7 @@ double fit_threshold(const RecordRange& records, std::size_t method) {
 
 SourceWeights with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
                                 double most_fit) {
-  constexpr double kPrior = 0.1, kMostly = 0.8;
+  constexpr double kPrior = 0.1;
   // A source that the likelihood rules out keeps this probability: it takes the noise for an autoregression
   // of order 1 that never changes. Chosen on the records under the seeds 83 and 84
   // (tests/reliability/records.py).
@@ -188,7 +188,8 @@ SourceWeights with_alternatives(const OfSources& weights, const RecordAlternativ
                disturbance = weights[RecordSource::disturbance], unknown = weights[RecordSource::unknown],
                sum = std::max(mismatch + both + disturbance + unknown, 1e-300),
                wrong_model = std::max((mismatch + both) / sum, kDoubt) * share(alternatives.mismatch),
-               alone = mismatch + both > 0.0 ? mismatch / (mismatch + both) : 1.0;
+               // The methods know of no mismatch of an MD, and see a disturbance in it.
+      alone = alternatives.named && mismatch + both > 0.0 ? mismatch / (mismatch + both) : 1.0;
   all[RecordSource::mismatch] = alone * wrong_model;
   all[RecordSource::both] = (1.0 - alone) * wrong_model;
   all[RecordSource::disturbance] = std::max(disturbance / sum, kDoubt) * share(alternatives.disturbance);
@@ -199,9 +200,11 @@ SourceWeights with_alternatives(const OfSources& weights, const RecordAlternativ
   all[RecordSource::data] = kPrior * share(alternatives.data);
   const auto best =
       static_cast<std::size_t>(std::max_element(all.each.begin(), all.each.end()) - all.each.begin());
-  if (alternatives.fit.each[best] > std::fmax(most_fit, 1.0)) {
-    all[RecordSource::unknown] += kMostly * all.each[best];
-    all.each[best] *= 1.0 - kMostly;
+  const double excess = alternatives.fit.each[best] / std::fmax(most_fit, 1.0);
+  if (excess > 1.0) {
+    const double kept = all.each[best] / (excess * excess);
+    all[RecordSource::unknown] += all.each[best] - kept;
+    all.each[best] = kept;
   }
   found.drift = 0.5 * all[RecordSource::sensor];
   all[RecordSource::sensor] = found.drift;

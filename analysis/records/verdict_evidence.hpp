@@ -49,8 +49,9 @@ struct SourceWeights {
 
 /// The weights where further hypotheses count, each by its likelihood (RecordAlternatives): mismatch and
 /// both, and disturbance, as probable before as `weights` has them, at least 1 in 100; valve, drift and data
-/// a tenth as probable, a drift by either of its causes. Where the most probable one leaves more than
-/// `most_fit` of RecordAlternatives::fit, and more than 1, most of its weight goes to none of these.
+/// a tenth as probable, a drift by either of its causes. Where RecordAlternatives::fit
+/// of the most probable one is r > 1 times `most_fit`, or r times 1 if this is more, 1 - 1 / r^2 of its
+/// weight goes to none of these.
 SourceWeights with_alternatives(const OfSources& weights, const RecordAlternatives& alternatives,
                                 double most_fit);
 

@@ -89,9 +89,10 @@ class VerdictWriter {
         return fmt::format("an unmeasured disturbance on {}, and not the model", at);
       case RecordSource::sensor: {
         const std::string sensor = model.sensor_cv < 0 ? at : cv(model.sensor_cv);
-        return model.stuck ? fmt::format("the sensor of {} is stuck: it shows one value from {} to {}",
-                                         sensor, stamp(model.stuck->first), stamp(model.stuck->end - 1))
-                           : fmt::format("the sensor of {} {} away", sensor, model.jumps ? "jumps" : "drifts");
+        return model.stuck
+                   ? fmt::format("the sensor of {} is stuck: it shows one value from {} to {}", sensor,
+                                 stamp(model.stuck->first), stamp(model.stuck->end - 1))
+                   : fmt::format("the sensor of {} {} away", sensor, model.jumps ? "jumps" : "drifts");
       }
       case RecordSource::valve:
         return fmt::format("the valve of {} sticks", mv(model.valve_mv));

@@ -13,7 +13,7 @@ namespace mpm {
 ///   x = G0 u,   x / (T s + 1),   T = 1, 2, 4 ... samples up to an eighth of the record
 ///
 /// as far as it is linear: with two lags of T, 1 - 2 / (T s + 1) has an inverse response, or the dead time 2
-/// T by Padé, and a further lag or one that is missing is a sum of few of them. A coefficient of 1 is an
+/// T by Pade, and a further lag or one that is missing is a sum of few of them. A coefficient of 1 is an
 /// error of the size of the channel. One matrix for each channel with a gain among `responses`, rows x N, in
 /// CV units.
 ///

@@ -404,12 +404,16 @@ TEST_CASE("columns of another clock are no error of the model, nor is a dead tim
 }
 
 TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever describes them", "[records]") {
-  Suspect drift, stays, disturbed;
+  Suspect drift, biased, stays, disturbed;
   const Eigen::Index N = drift.record.samples();
   drift.record.y.row(1) += Eigen::RowVectorXd::LinSpaced(N, -0.05, 0.15).cwiseMax(0.0);
   const RecordAlternatives drifts = drift.alternatives();
   CHECK(drifts.sensor > std::max({drifts.disturbance, drifts.mismatch, drifts.valve, drifts.data}) + 5.0);
-  CHECK(drifts.sensor_cv == 1);
+  CHECK((drifts.sensor_cv == 1 && !drifts.sensor_jumps));
+  biased.record.y.row(1).tail(N / 3).array() += 0.15;
+  const RecordAlternatives jumps = biased.alternatives();
+  CHECK(jumps.sensor > std::max({jumps.disturbance, jumps.mismatch, jumps.valve, jumps.data}) + 5.0);
+  CHECK((jumps.sensor_cv == 1 && jumps.sensor_jumps));
   double position = 0.0;
   Eigen::RowVectorXd x = stays.record.u.row(1);
   for (double& each : x)
@@ -417,7 +421,8 @@ TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever de
   for (Eigen::Index cv = 0; cv < 2; ++cv)
     stays.record.y.row(cv) += stays.response(cv, 1, x - stays.record.u.row(1));
   const RecordAlternatives sticks = stays.alternatives();
-  CHECK(sticks.valve > std::max({sticks.disturbance, sticks.mismatch, sticks.sensor, sticks.data}) + 5.0);
+  // Ten times as probable as the others.
+  CHECK(sticks.valve > std::max({sticks.disturbance, sticks.mismatch, sticks.sensor, sticks.data}) + 2.3);
   CHECK(sticks.valve_mv == 1);
   Eigen::RowVectorXd v = measurement_noise(disturbed.study, 5).row(0);
   for (Eigen::Index k = 1; k < N; ++k)
@@ -503,8 +508,9 @@ TEST_CASE("what leaves more than chance does is none of the faults, as far as si
     return of[RecordSource::unknown] > of[RecordSource::disturbance];
   };
   CHECK_FALSE(is_unknown(0.9, 0.7));
-  CHECK(is_unknown(1.1, 0.7));
-  CHECK_FALSE(is_unknown(1.1, 1.2));
+  CHECK_FALSE(is_unknown(1.1, 0.7));  // a little more than chance leaves
+  CHECK(is_unknown(1.5, 0.7));
+  CHECK_FALSE(is_unknown(1.5, 1.2));
 }
 
 /// Slow noise on both CVs that never stops, of this many standard deviations of their noise.

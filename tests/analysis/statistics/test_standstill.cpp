@@ -40,4 +40,26 @@ TEST_CASE("standstill: chance does not freeze noise, also where it is rounded or
   CHECK_FALSE(is_long(longest_standstill(noise.head(250)), 600));
 }
 
+TEST_CASE("standstill: values kept in the place of bad ones are missing, rounded and held ones are not",
+          "[standstill]") {
+  constexpr Eigen::Index N = 600;
+  const Eigen::RowVectorXd noise = testing::white_noise(N, 3).transpose();
+  Eigen::RowVectorXd kept = noise, held = noise, frozen = noise;
+  kept.segment(101, 4).setConstant(kept(100));
+  kept.segment(401, 7).setConstant(kept(400));
+  const Eigen::RowVectorXd left = without_standstills(kept);
+  for (Eigen::Index k = 0; k < N; ++k)
+    if ((k > 100 && k < 105) || (k > 400 && k < 408))
+      CHECK(std::isnan(left(k)));
+    else
+      CHECK(left(k) == noise(k));
+  for (Eigen::Index k = 0; k < N; ++k)
+    held(k) = noise(k / 10 * 10);
+  frozen.segment(200, 100).setConstant(frozen(200));
+  for (const Eigen::RowVectorXd& values :
+       {noise, held, frozen, Eigen::RowVectorXd((noise.array() / 0.5).round() * 0.5)})
+    CHECK(without_standstills(values) == values);
+  CHECK(without_standstills(Eigen::RowVectorXd::Constant(3, kNaN)).array().isNaN().all());
+}
+
 }  // namespace mpm

@@ -65,6 +65,7 @@ class EvidenceDraw {
       of.weights.each[place] = chance(0.5) ? 0.0 : chance(0.3) ? 1.0 : between(0.0, 1.0);
     if (chance(0.3)) {  // by either cause
       of.drift = between(0.0, 1.0);
+      of.jumps = chance(0.5);
       of.weights[RecordSource::sensor] = of.drift;
       of.weights[RecordSource::disturbance] += of.drift;
     }
@@ -270,6 +271,9 @@ void read_benchmark(const RecordVerdictText& text, const std::vector<std::string
                    "a channel of no CV: " + said);
   reading.demand(!(has(text.model, "by its sensor or by") && has(text.action, "Repair")),
                  "a repair of a model that something drifts away from");
+  reading.demand(!(has(text.model, "drifts away") && has(text.model, "disturbance that stays")) &&
+                     !(has(text.model, "jumps away") && has(text.model, "disturbance that grows")),
+                 "a CV that drifts and jumps: " + text.model);
   reading.demand(!has(text.model, "is stuck") || has(text.action, "sensor"),
                  "a stuck sensor that nobody looks at");
 }

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include "analysis/basis/basis_runs.hpp"
+#include "analysis/methods/method_panel.hpp"
 #include "analysis/methods/method_table.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/source_probabilities.hpp"
@@ -85,6 +86,27 @@ TEST_CASE("mpmbench: where the likelihood sees both faults, the order test says 
         std::pair{draw_with({}, {oscillation}), FaultSource::ud}, std::pair{later, FaultSource::mpm}}) {
     CHECK(source(alone, draw) == FaultSource::mpm_ud);
     CHECK(source(together, draw) == truth);
+  }
+}
+
+TEST_CASE("mpmbench: where errors of the model are learnt, one fault of another form is not two") {
+  Study study = find_study("wood-berry");
+  study.assessment.model = AssessmentModel::benchmark;
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  MethodPanel panel(study, assessment_context(study, basis, testing::kFactory), {"mpmbench"});
+  Disturbance oscillation{0, 1.0, 5.0};
+  oscillation.signal = Sine{.amplitude = 0.5, .period = 90.0};
+  for (const auto& [draw, truth] :
+       {std::pair{draw_with({}, {oscillation}), ToldSource::ud},
+        std::pair{draw_with({{1, 0, MismatchParameter::gain, 2.0}, {1, 1, MismatchParameter::gain, 1.5}}, {}),
+                  ToldSource::mpm}}) {
+    const AssessmentRecord said =
+        panel
+            .assess(assessed_loop(study, basis.point, simulate_experiment(study, draw, testing::kFactory)),
+                    nullptr)
+            .front();
+    CHECK(said.flagged);
+    CHECK(said.told() == truth);
   }
 }
 

@@ -62,4 +62,24 @@ TEST_CASE("the likelihood names a sensor that is wrong, of a CV and of an MD, an
   CHECK(said(disturbance).front().told() == ToldSource::ud);
 }
 
+TEST_CASE("a ramp in one CV is its sensor's, one in several CVs a disturbance that reaches them",
+          "[sensor]") {
+  Study study = find_study("wood-berry");
+  study.assessment.model = AssessmentModel::benchmark;
+  const BasisCase basis = run_basis_case(study, testing::kFactory);
+  MethodPanel panel(study, assessment_context(study, basis, testing::kFactory), {"likelihood"});
+  ExperimentDraw healthy;
+  healthy.index = 4;
+  AssessedLoop loop =
+      assessed_loop(study, basis.point, simulate_experiment(study, healthy, testing::kFactory));
+  const auto add_ramp = [&](Eigen::Index cv) {
+    const double noise = study.simulation.noise_standard_deviation(cv);
+    loop.y.row(cv) += Eigen::RowVectorXd::LinSpaced(loop.samples(), -15.0, 25.0).cwiseMax(0.0) * noise;
+  };
+  add_ramp(0);
+  CHECK(panel.assess(loop, nullptr).front().told() == ToldSource::sensor);
+  add_ramp(1);
+  CHECK(panel.assess(loop, nullptr).front().told() == ToldSource::ud);
+}
+
 }  // namespace mpm
