@@ -194,7 +194,8 @@ class Comparison {
         continue;
       most = best.gain;
       found.named.reset();
-      if (best.place < study_.mv_count())
+      found.md = std::max<Eigen::Index>(-1, best.place - study_.mv_count());
+      if (found.md < 0)
         found.named = {{cv, best.place}, best.parameter};
     }
     found.mismatch = none_ + (most > 0.0 ? sum : most);
@@ -285,7 +286,7 @@ class Comparison {
     constexpr double kCloser[] = {0.84, 0.92, 1.08, 1.18};
     constexpr double kTriedJumps[] = {0.0, 0.3, 0.6, 1.0};
     found.valve = -kInfinity;
-    const double members = std::log(static_cast<double>((1 + std::size(kTriedJumps)) * study_.mv_count()));
+    const double members = std::log(static_cast<double>((1 + std::ssize(kTriedJumps)) * study_.mv_count()));
     for (Eigen::Index mv = 0; mv < study_.mv_count(); ++mv) {
       const Eigen::RowVectorXd u = loop_.u.row(mv);
       const double range = u.maxCoeff() - u.minCoeff();

@@ -34,7 +34,8 @@ struct RecordAlternatives {
   double late = 0.0;                                                                ///< s
   Eigen::Index sensor_cv = -1, valve_mv = -1;
   bool sensor_jumps = false;                ///< h of `sensor` is a step
-  std::optional<NamedMismatch> named = {};  ///< the most likely mismatch, without a size; none: that of an MD
+  std::optional<NamedMismatch> named = {};  ///< the most likely mismatch, of an MV, without a size
+  Eigen::Index md = -1;                     ///< whose channel the most likely mismatch is of, and no MV's
   OfSources fit = {};  ///< the largest input_dependence() of a CV where this is taken off; none of a mismatch
 };
 

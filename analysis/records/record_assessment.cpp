@@ -284,6 +284,7 @@ void add_sources(const RecordFrame& frame, RecordAssessment& assessment, Verdict
     evidence.drift = weights.drift;
     evidence.jumps = alternatives.sensor_jumps;
     evidence.likeliest = alternatives.named;
+    evidence.md = alternatives.md;
     evidence.valve_mv = alternatives.valve_mv;
     evidence.sensor_cv = alternatives.sensor_cv;
     if (!frame.late.any()) {

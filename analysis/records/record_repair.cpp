@@ -88,7 +88,8 @@ void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictE
   const std::vector<bool> counted = counted_samples(loop);
   try {
     std::optional<RepairedChannel> named;
-    if (const auto repair = repair_of(assessment, loop, frame, evidence.likeliest)) {
+    if (const auto repair =
+            evidence.md < 0 ? repair_of(assessment, loop, frame, evidence.likeliest) : std::nullopt) {
       evidence.mismatch = mismatch_of(*repair);
       assessment.repair = promised_repair(study, point, loop, *repair, frame.factory, counted);
       assessment.information =

@@ -111,8 +111,10 @@ RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::ve
     return model;
   model.since = evidence.onset;
   model.source = likeliest(evidence, model.drifts);
-  if (model.has_mismatch())
+  if (model.has_mismatch()) {
     model.mismatch = evidence.mismatch;
+    model.md = evidence.md;
+  }
   if (model.source == RecordSource::valve)
     model.valve_mv = evidence.valve_mv;
   if (model.source == RecordSource::sensor || model.drifts) {

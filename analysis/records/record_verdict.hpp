@@ -150,6 +150,7 @@ struct VerdictEvidence {
   std::optional<Standstill> stuck = {};
   std::optional<NamedMismatch> mismatch = {};   ///< what is wrong with the model
   std::optional<NamedMismatch> likeliest = {};  ///< where no method names a mismatch; its size is not known
+  Eigen::Index md = -1;  ///< whose channel the likeliest mismatch is of: none that can be repaired is named
   Eigen::Index valve_mv = -1, sensor_cv = -1;
   std::vector<Eigen::Index> late_cvs = {};  ///< of data; empty: all CVs
   double late = 0.0;  ///< samples by which they are late against the inputs, below 0: early
@@ -174,6 +175,7 @@ struct RecordVerdict {
     bool jumps = false;   ///< once, where it drifts or its sensor does
     std::optional<Standstill> stuck = {};  ///< of the source `sensor`: where `sensor_cv` shows one value
     std::optional<NamedMismatch> mismatch = {};   ///< of a source with a mismatch
+    Eigen::Index md = -1;                         ///< of a mismatch that is of an MD
     Eigen::Index valve_mv = -1, sensor_cv = -1;   ///< of these sources, and of a drift
     std::vector<Eigen::Index> late_cvs = {};      ///< of data, or where it is corrected; empty: all CVs
     double late = 0.0;                            ///< samples, below 0: early; 0: none is

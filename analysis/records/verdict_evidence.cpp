@@ -189,7 +189,7 @@ SourceWeights with_alternatives(const OfSources& weights, const RecordAlternativ
                sum = std::max(mismatch + both + disturbance + unknown, 1e-300),
                wrong_model = std::max((mismatch + both) / sum, kDoubt) * share(alternatives.mismatch),
                // The methods know of no mismatch of an MD, and see a disturbance in it.
-      alone = alternatives.named && mismatch + both > 0.0 ? mismatch / (mismatch + both) : 1.0;
+      alone = alternatives.md < 0 && mismatch + both > 0.0 ? mismatch / (mismatch + both) : 1.0;
   all[RecordSource::mismatch] = alone * wrong_model;
   all[RecordSource::both] = (1.0 - alone) * wrong_model;
   all[RecordSource::disturbance] = std::max(disturbance / sum, kDoubt) * share(alternatives.disturbance);

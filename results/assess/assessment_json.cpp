@@ -214,6 +214,7 @@ Json model_json(const RecordAssessment& of) {
           {"source", to_string(model.source)},
           {"drift", model.drifts && model.sensor_cv >= 0 ? Json(cv_name(of.study, model.sensor_cv)) : Json()},
           {"jumps", model.jumps},
+          {"md", model.md < 0 ? Json() : Json(of.study.plant.mds[static_cast<std::size_t>(model.md)].name)},
           {"stuck", model.stuck ? Json{{"cv", cv_name(of.study, model.sensor_cv)},
                                        {"from", stamp(model.stuck->first)},
                                        {"to", stamp(model.stuck->end - 1)}}

@@ -73,7 +73,10 @@ class VerdictWriter {
     const RecordVerdict::Model& model = verdict_.model;
     const std::string at = cv(model.at.front().cv);
     std::string mismatch = model.mismatch ? mismatch_sentence(study_, *model.mismatch)
-                                          : fmt::format("a channel of {} is not that of the model", at);
+                           : model.md >= 0
+                               ? fmt::format("the response of {} to {} is not that of the model", at,
+                                             study_.plant.mds[static_cast<std::size_t>(model.md)].name)
+                               : fmt::format("a channel of {} is not that of the model", at);
     if (model.drifts)
       return fmt::format(
           "{} {} away from the model, by its sensor or by an unmeasured disturbance that {}: the loop "

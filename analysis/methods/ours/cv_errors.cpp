@@ -18,8 +18,8 @@ namespace {
 /// (tests/reliability/records.py).
 constexpr Eigen::Index kOtherLags = 6, kOwnLags = 12;
 
-constexpr int kPasses = 3;
-constexpr Eigen::Index kFewestSamples = 50;  ///< to either side of a change of the noise
+constexpr int kFits = 3;
+constexpr Eigen::Index kFewestInPart = 50;  ///< to either side of a change of the noise
 
 /// Q of A = Q R, n x m.
 Columns basis_of(const Columns& A) {
@@ -109,7 +109,7 @@ void CvErrors::find_change(Eigen::Index onset) {
   Eigen::Index best = e_.size();
   double most = none_;
   const auto take = [&](Eigen::Index change) {
-    if (change < kFewestSamples || e_.size() - change < kFewestSamples)
+    if (change < kFewestInPart || e_.size() - change < kFewestInPart)
       return;
     divide(change);
     if (none_ - penalty > most) {
@@ -187,7 +187,7 @@ double CvErrors::log_likelihood(const Eigen::VectorXd& e, const Columns& free, E
                       std::max(1e-300, own.squaredNorm() / static_cast<double>(part.count))});
   }
   Eigen::VectorXd of_errors, errors = e;
-  for (int pass = 0; pass < kPasses; ++pass) {
+  for (int pass = 0; pass < kFits; ++pass) {
     Columns A = Columns::Zero(p + q, p + q);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(p + q);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -207,7 +207,7 @@ double CvErrors::log_likelihood(const Eigen::VectorXd& e, const Columns& free, E
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const Eigen::VectorXd own = parts_[i].of(errors), w = mpm::whitened_by(noises[i].a, own);
       noises[i].variance = std::max(1e-300, w.squaredNorm() / static_cast<double>(w.size()));
-      if (pass + 1 < kPasses)
+      if (pass + 1 < kFits)
         noises[i].a = autoregression_of(own, kErrorOrder);
     }
   }
