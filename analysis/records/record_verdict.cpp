@@ -164,7 +164,7 @@ RecordVerdict::Action action_on_channel(const VerdictEvidence& evidence, const R
     return action;
   action.promise = evidence.promise;
   const bool has_size = evidence.tells_apart || !std::isnan(verdict.model.mismatch->size);
-  if (evidence.promise->gain > (is_dearer ? 0.0 : evidence.worth))
+  if (evidence.promise->gain > (is_dearer ? kNoGain : evidence.worth))
     action.kind = has_size ? ActionKind::repair : ActionKind::test;
   else
     action.kind = is_dearer ? ActionKind::test : ActionKind::wait;

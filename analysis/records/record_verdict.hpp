@@ -162,6 +162,9 @@ struct VerdictEvidence {
   RecordBenchmark benchmark = {};  ///< in use, or the best period, whose use the verdict decides
 };
 
+/// A repair that takes away less of what the loop costs gains nothing: 0 % in the text.
+inline constexpr double kNoGain = 0.005;
+
 /// The verdict. record_verdict() makes it, and nothing changes it.
 struct RecordVerdict {
   struct Model {

@@ -281,7 +281,7 @@ class VerdictWriter {
           "Test the channels of {} with steps, and look at sensors, valves, limits and operators of that "
           "time first.",
           cv(verdict_.named_cv()));
-    if (action.worsened.empty() && action.promise && !(action.promise->gain > 0.0))
+    if (action.worsened.empty() && action.promise && !(action.promise->gain > kNoGain))
       return fmt::format(
           "Test {} with steps, and look for other causes of the cost: by this record alone, its repair is "
           "expected to gain nothing ({}).",
@@ -305,7 +305,7 @@ class VerdictWriter {
       return fmt::format(
           "Wait: leave {} as it is, its repair is expected to {}. Test it before the loop is tuned tighter.",
           channel,
-          action.promise->gain > 0.0
+          action.promise->gain > kNoGain
               ? fmt::format("take away only {} of what the loop costs", promise_text(*action.promise))
               : fmt::format("gain nothing ({})", promise_text(*action.promise)));
     if (!channel.empty())

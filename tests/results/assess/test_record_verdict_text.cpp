@@ -274,6 +274,8 @@ void read_benchmark(const RecordVerdictText& text, const std::vector<std::string
   reading.demand(!(has(text.model, "drifts away") && has(text.model, "disturbance that stays")) &&
                      !(has(text.model, "jumps away") && has(text.model, "disturbance that grows")),
                  "a CV that drifts and jumps: " + text.model);
+  reading.demand(!(has(text.action, "Repair") && has(text.action, "take away 0 %")),
+                 "a repair that brings nothing: " + text.action);
   reading.demand(!has(text.model, "is stuck") || has(text.action, "sensor"),
                  "a stuck sensor that nobody looks at");
 }
