@@ -252,11 +252,10 @@ VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessme
 /// Of the CVs that the model does not explain, one that shows a value for so long that chance does not make
 /// it: no other fault leaves such a stretch.
 void add_stuck_sensor(const AssessedLoop& loop, VerdictEvidence& evidence) {
-  constexpr double kNoChance = 1e-6;
   for (Eigen::Index cv = 0; cv < evidence.model_scores.size(); ++cv) {
     const Standstill stretch = longest_standstill(loop.y.row(cv));
-    if (!(evidence.model_scores(cv) > evidence.model_threshold) || !is_long(stretch, loop.samples()) ||
-        !(stretch.chance < kNoChance) || (evidence.stuck && stretch.length() <= evidence.stuck->length()))
+    if (!(evidence.model_scores(cv) > evidence.model_threshold) || !is_frozen(stretch, loop.samples()) ||
+        (evidence.stuck && stretch.length() <= evidence.stuck->length()))
       continue;
     evidence.stuck = stretch;
     evidence.sensor_cv = cv;

@@ -74,4 +74,9 @@ bool is_long(const Standstill& stretch, Eigen::Index samples) {
          static_cast<double>(stretch.length()) > kLeastShare * static_cast<double>(samples);
 }
 
+bool is_frozen(const Standstill& stretch, Eigen::Index samples) {
+  constexpr double kNoChance = 1e-6;
+  return is_long(stretch, samples) && stretch.chance < kNoChance;
+}
+
 }  // namespace mpm

@@ -31,4 +31,7 @@ Eigen::RowVectorXd without_standstills(Eigen::RowVectorXd values);
 /// Is this stretch one of an instrument that may be frozen: 20 samples and a tenth of the signal?
 bool is_long(const Standstill& stretch, Eigen::Index samples);
 
+/// Is it, and longer than chance makes it, at a probability of 1e-6: of an instrument that is frozen?
+bool is_frozen(const Standstill& stretch, Eigen::Index samples);
+
 }  // namespace mpm

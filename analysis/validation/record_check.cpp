@@ -80,9 +80,19 @@ void refuse_out_of_proportion(const RecordedVariable& variable) {
                       kLargestValue));
 }
 
+/// The values but for those of an instrument that is frozen.
+Eigen::ArrayXd without_frozen(const Eigen::ArrayXd& values) {
+  const Standstill stretch = longest_standstill(values.matrix().transpose());
+  if (!is_frozen(stretch, values.size()) || stretch.length() == values.size())
+    return values;
+  Eigen::ArrayXd left(values.size() - stretch.length());
+  left << values.head(stretch.first), values.tail(values.size() - stretch.end);
+  return left;
+}
+
 /// Does it look like an absolute value?
 bool is_far_off(const RecordedVariable& variable) {
-  const Eigen::ArrayXd values = variable.present();
+  const Eigen::ArrayXd values = without_frozen(variable.present());
   const double mean = values.mean();
   if (!variable.is_limited())
     return !is_constant(variable) && std::abs(mean) > kFarFromZero * deviation_of(values);

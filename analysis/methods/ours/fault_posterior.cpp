@@ -501,7 +501,7 @@ class FaultPosterior final : public AssessmentMethod {
   /// log of the probability of the errors of a CV whose sensor is stuck.
   double stuck_evidence(const AssessedLoop& loop, std::size_t cv, Eigen::MatrixXd series) const {
     const Standstill stretch = longest_standstill(loop.y.row(static_cast<Eigen::Index>(cv)));
-    if (!is_long(stretch, loop.samples()) || !(stretch.chance < kNoChance))
+    if (!is_frozen(stretch, loop.samples()))
       return -kInfinity;
     series.row(0).segment(loop.first + stretch.first, stretch.length()).setConstant(kNaN);
     if (series.row(0).array().isNaN().all())
@@ -514,8 +514,6 @@ class FaultPosterior final : public AssessmentMethod {
   static constexpr double kSuspect = 1e-3;       ///< probability from which a CV is looked at more closely
   /// log of the likelihood of an error of a sensor over all else that may be wrong with its CV.
   static constexpr double kTelling = 5.0;
-  /// A sensor shows one value for so long that chance does not make it (Standstill::chance).
-  static constexpr double kNoChance = 1e-6;
   /// log of the density of a sample of a stuck sensor, in deviations of the noise: it is known to a
   /// twentieth.
   static constexpr double kOfStuckSample = 3.0;

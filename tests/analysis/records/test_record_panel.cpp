@@ -29,6 +29,8 @@
 #include "analysis/sensitivity/nominal_output.hpp"
 #include "analysis/study_files/recorded_study.hpp"
 #include "analysis/study_files/study_library.hpp"
+#include "analysis/validation/record_check.hpp"
+#include "base/error.hpp"
 #include "base/non_finite.hpp"
 #include "plants/linear/zero_order_hold.hpp"
 #include "scenarios/faults/fault.hpp"
@@ -430,6 +432,18 @@ TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever de
   disturbed.record.y.row(0) += v;
   const RecordAlternatives slow = disturbed.alternatives();
   CHECK(std::max({slow.valve, slow.sensor, slow.data}) < slow.disturbance + 5.0);
+}
+
+TEST_CASE("a CV that is frozen does not look absolute", "[records]") {
+  Suspect frozen, absolute;
+  frozen.study.controller.cv_hard = absolute.study.controller.cv_hard = Limits::none(2);
+  for (Eigen::Index k = 0; k < frozen.record.samples(); ++k)
+    frozen.record.y(1, k) = 5.0 + std::sin(0.9 * static_cast<double>(k));
+  absolute.record.y.row(1) = frozen.record.y.row(1).array() + 20.0;
+  CHECK_NOTHROW(check_record(frozen.study, frozen.record));
+  frozen.record.y.row(1).tail(frozen.record.samples() * 7 / 10).setConstant(5.0);
+  CHECK_NOTHROW(check_record(frozen.study, frozen.record));
+  CHECK_THROWS_AS(check_record(absolute.study, absolute.record), InputError);
 }
 
 TEST_CASE("a disturbance of an MV that begins within the record explains it, and a valve does not",

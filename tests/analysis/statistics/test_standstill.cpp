@@ -23,20 +23,20 @@ TEST_CASE("standstill: the longest stretch of one value, over what is missing", 
 TEST_CASE("standstill: chance does not freeze noise, also where it is rounded or held", "[standstill]") {
   constexpr Eigen::Index N = 600;
   Eigen::RowVectorXd noise = testing::white_noise(N, 3).transpose();
-  const auto is_frozen = [](const Eigen::RowVectorXd& values) {
+  const auto freezes = [](const Eigen::RowVectorXd& values) {
     const Standstill longest = longest_standstill(values);
-    return is_long(longest, N) && longest.chance < 1e-6;
+    return is_frozen(longest, N);
   };
   Eigen::RowVectorXd rounded = (noise.array() / 0.5).round() * 0.5, held = noise;
   for (Eigen::Index k = 0; k < N; ++k)
     held(k) = noise(k / 80 * 80);  // an analysis every 80 samples
-  CHECK_FALSE(is_frozen(noise));
-  CHECK_FALSE(is_frozen(rounded));
-  CHECK_FALSE(is_frozen(held));
+  CHECK_FALSE(freezes(noise));
+  CHECK_FALSE(freezes(rounded));
+  CHECK_FALSE(freezes(held));
   rounded.segment(200, 100).setConstant(rounded(200));
   noise.segment(200, 100).setConstant(noise(200));
-  CHECK(is_frozen(rounded));
-  CHECK(is_frozen(noise));
+  CHECK(freezes(rounded));
+  CHECK(freezes(noise));
   CHECK_FALSE(is_long(longest_standstill(noise.head(250)), 600));
 }
 
