@@ -12,10 +12,10 @@ namespace mpm {
 ///
 ///   x = G0 u,   x / (T s + 1),   T = 1, 2, 4 ... samples up to an eighth of the record
 ///
-/// as far as it is linear: with two lags of T, 1 - 2 / (T s + 1) has an inverse response, or the dead time 2
-/// T by Pade, and a further lag or one that is missing is a sum of few of them. A coefficient of 1 is an
-/// error of the size of the channel. One matrix for each channel with a gain among `responses`, rows x N, in
-/// CV units.
+/// as far as it is linear: 2 / (T s + 1) - 1 is an inverse response, which is also Pade's approximation of a
+/// dead time of 2 T; a further lag is one of them, and a lag that is missing a sum of a few. A coefficient of
+/// 1 is an error of the size of the channel. One matrix for each channel with a gain among `responses`, rows
+/// x N, in CV units.
 ///
 /// | symbol | name    | shape         |
 /// |--------|---------|---------------|
