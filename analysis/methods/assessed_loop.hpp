@@ -55,6 +55,9 @@ struct AssessedLoop {
   /// The window's columns of a signal of the record, one column for each sample.
   auto in_window(const Eigen::MatrixXd& signal) const { return signal.middleCols(first, samples()); }
 
+  /// Is it the record of a plant, whose noise nobody has stated?
+  bool has_unknown_noise() const { return !from_start().untold.empty(); }
+
   Eigen::Index samples() const { return y.cols(); }
   bool has_setpoint(Eigen::Index cv) const;
   /// The CVs with a setpoint, in their order.

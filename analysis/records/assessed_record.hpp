@@ -27,8 +27,8 @@ namespace mpm {
 struct RecordTrial {
   std::string archive;  ///< where it is kept
   std::int64_t loops = 0;
-  /// In the order of the answers; none of a first method that tells sources: it is asked only of the records
-  /// that the model does not explain.
+  /// In the order of the answers; none of `mpmbench`, which is asked only of the records that the model does
+  /// not explain.
   std::vector<std::optional<TrialFindings>> methods;
   TrialFindings model;  ///< of RecordAssessment::model
   Eigen::VectorXd cost = {},
@@ -47,10 +47,11 @@ struct RecordAssessment {
   AssessedLoop loop;
   Eigen::MatrixXd y0;                  ///< ny x N, the nominal loop under the recorded disturbances
   Eigen::Index unjudged = 0;           ///< samples at the start that only fill the memory of the model
-  std::vector<AssessmentRecord> said;  ///< by each method; the first one has the word on the source
+  std::vector<AssessmentRecord> said;  ///< by each method that was asked for
   AssessmentRecord model;              ///< model_check_method()
   std::vector<UnexplainedCv> unexplained = {};
-  AssessmentRecord odds = {};  ///< `likelihood`, of a record that the model does not explain
+  AssessmentRecord sources = {};  ///< `mpmbench`, whose answer the verdict is
+  AssessmentRecord odds = {};     ///< `likelihood`, which it asks
   ControllerCheck controller;
   double model_error = 0.0;                 ///< RecordFrame::model_error
   std::vector<CvCost> costs = {};           ///< over all judged samples

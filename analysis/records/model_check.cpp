@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "analysis/methods/ours/fault_comparison.hpp"
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/channel_health.hpp"
 #include "analysis/records/model_habit.hpp"
-#include "analysis/records/record_alternatives.hpp"
 #include "base/non_finite.hpp"
 
 namespace mpm {
@@ -37,7 +37,8 @@ class ModelCheck final : public AssessmentMethod {
       assessment.cvs.push_back({score > kFarTooLarge, score});
       assessment.score = std::max(assessment.score, score);
       assessment.numbers.push_back({"noise", fit.noise, cv});
-      if (const double found = input_dependence(study_, loop, fit, cv); found > dependence)
+      if (const double found = input_dependence(study_, loop, {loop, cv, fit.samples, fit.e, fit.X}, cv);
+          found > dependence)
         dependence = found;
       for (const ChannelHistory& history : channel_histories(beside, cv, begins, loop.samples(), kInfinity))
         for (const ChannelPeriod& period : history.periods)

@@ -14,19 +14,19 @@
 
 #include "analysis/basis/basis_runs.hpp"
 #include "analysis/methods/method_table.hpp"
+#include "analysis/methods/ours/cv_errors.hpp"
+#include "analysis/methods/ours/fault_comparison.hpp"
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/column_lags.hpp"
 #include "analysis/records/cost_of_record.hpp"
 #include "analysis/records/held_columns.hpp"
 #include "analysis/records/model_check.hpp"
 #include "analysis/records/model_habit.hpp"
-#include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
 #include "analysis/records/record_repair.hpp"
 #include "analysis/records/record_trials.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/records/verdict_evidence.hpp"
-#include "analysis/statistics/standstill.hpp"
 #include "analysis/study_files/recorded_study.hpp"
 #include "analysis/validation/record_check.hpp"
 #include "base/error.hpp"
@@ -36,8 +36,15 @@
 namespace mpm {
 namespace {
 
-/// Says how probable the usual sources are.
-constexpr const char* kOdds = "likelihood";
+/// Whose answer the verdict is, and what it asks for the posterior.
+constexpr const char *kVerdict = "mpmbench", *kOdds = "likelihood";
+
+/// The methods of a record: the verdict's first, and then the others that were asked for.
+std::vector<std::string> with_verdict_first(std::vector<std::string> methods) {
+  methods.erase(std::remove(methods.begin(), methods.end(), kVerdict), methods.end());
+  methods.insert(methods.begin(), kVerdict);
+  return methods;
+}
 
 /// y0: the controller on its own model under the recorded disturbances, without noise; what is not reached is
 /// zero.
@@ -99,6 +106,18 @@ void tell_noise(const RecordFrame& frame, RecordAssessment& assessment) {
   }
 }
 
+/// The errors of the CVs beside those that the model may have.
+std::vector<CvErrors> cv_errors(const RecordFrame& frame, const AssessedLoop& loop) {
+  const ChannelErrorFits fits(frame.as_kept, frame.model_error);
+  std::vector<CvErrors> all;
+  for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
+    const ChannelErrorFit fit = fits.of(loop, cv);
+    all.emplace_back(loop, cv, fit.samples, fit.e, fit.X);
+    all.back().find_change();
+  }
+  return all;
+}
+
 void tell_unjudged(RecordAssessment& assessment) {
   if (2 * assessment.unjudged > assessment.record.samples())
     throw InputError(
@@ -117,7 +136,7 @@ void tell_unjudged(RecordAssessment& assessment) {
 std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study& study,
                                       const QpSolverFactory& factory, RecordAssessment& assessment) {
   auto frame = std::make_shared<RecordFrame>();
-  frame->methods = options.methods;
+  frame->methods = with_verdict_first(options.methods);
   frame->methods.emplace_back(kModelCheck);
   const auto study_with = [&](GapFill gaps) {
     Study of = study;
@@ -135,7 +154,7 @@ std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study&
   frame->factory = factory;
   frame->model_error = options.model_error;
   frame->finds_benchmark = study.data.benchmark == std::vector<std::string>{"found"};
-  assessment.study = frame->study_of(options.methods.front());
+  assessment.study = frame->as_kept;
   frame->basis = basis_of(assessment.study, frame->factory);
   frame->settling = slowest_settling(study);
   frame->y0 = nominal_loop(assessment.study, assessment.record.d, frame->factory);
@@ -147,14 +166,6 @@ std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study&
   assessment.unjudged = frame->unjudged;
   tell_unjudged(assessment);
   return frame;
-}
-
-/// The answer of `likelihood` on a record with a fault. That there is one it cannot say: it takes the small
-/// disturbances that no plant is without for a fault.
-AssessmentRecord odds_of(const RecordFrame& frame, const RecordAssessment& assessment) {
-  RecordFrame alone = frame;
-  alone.as_kept.monitoring.reset();
-  return judged_by(alone, {kOdds}, assessment.record).said.front();
 }
 
 /// Costs of the record itself from this sample on.
@@ -249,54 +260,16 @@ VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessme
   return evidence;
 }
 
-/// Of the CVs that the model does not explain, one that shows a value for so long that chance does not make
-/// it: no other fault leaves such a stretch.
-void add_stuck_sensor(const AssessedLoop& loop, VerdictEvidence& evidence) {
-  for (Eigen::Index cv = 0; cv < evidence.model_scores.size(); ++cv) {
-    const Standstill stretch = longest_standstill(loop.y.row(cv));
-    if (!(evidence.model_scores(cv) > evidence.model_threshold) || !is_frozen(stretch, loop.samples()) ||
-        (evidence.stuck && stretch.length() <= evidence.stuck->length()))
-      continue;
-    evidence.stuck = stretch;
-    evidence.sensor_cv = cv;
-    evidence.drift = 0.0;
-    evidence.weights = {};
-    evidence.weights[RecordSource::sensor] = 1.0;
-  }
-}
-
 /// What may be the matter with a record that the model does not explain.
 void add_sources(const RecordFrame& frame, RecordAssessment& assessment, VerdictEvidence& evidence) {
-  if (!assessment.odds.form)
-    assessment.odds = odds_of(frame, assessment);
-  AssessmentRecord first = assessment.said.front();
-  first.flagged = assessment.is_flagged(0);  // by simulated records, and not by a band of variances
-  evidence.weights = source_weights(assessment.odds, first);
-  if (frame.model_error > 0.0) {
-    RecordAlternatives alternatives =
-        record_alternatives(frame.as_kept, assessment.loop, frame.model_error, evidence.onset);
-    if (frame.late.any())
-      alternatives.data = -kInfinity;  // nothing is left of it
-    const SourceWeights weights =
-        with_alternatives(evidence.weights, alternatives, assessment.trial ? assessment.trial->fit : kNaN);
-    evidence.weights = weights.of;
-    evidence.drift = weights.drift;
-    evidence.jumps = alternatives.sensor_jumps;
-    evidence.likeliest = alternatives.named;
-    evidence.md = alternatives.md;
-    evidence.valve_mv = alternatives.valve_mv;
-    evidence.sensor_cv = alternatives.sensor_cv;
-    if (!frame.late.any()) {
-      if (alternatives.data_cv >= 0)
-        evidence.late_cvs = {alternatives.data_cv};
-      evidence.late = alternatives.late;
-    }
-    add_stuck_sensor(assessment.loop, evidence);
-    return;
+  const LateCvs corrected = frame.late;
+  take_sources(assessment.loop, assessment.sources, assessment.trial ? assessment.trial->fit : kNaN,
+               evidence);
+  if (corrected.any()) {  // nothing is left of it
+    evidence.weights[RecordSource::data] = 0.0;
+    evidence.late = corrected.samples;
+    evidence.late_cvs = corrected.cvs;
   }
-  for (const AssessmentRecord* const said : {&assessment.odds, &assessment.said.front()})
-    if (const double valve = said->number("valve_mv"); !std::isnan(valve))
-      evidence.valve_mv = static_cast<Eigen::Index>(valve);
 }
 
 /// The record as it is judged, without the simulated ones beside it.
@@ -307,26 +280,21 @@ std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Stu
   JudgedRecord checked = judged_by(*frame, {kModelCheck}, assessment.record);
   if (const AssessmentRecord& check = checked.said.front();
       frame->model_error > 0.0 && check.answered() && check.score > kFarTooLarge) {
-    frame->late = common_lateness(frame->as_kept, checked.loop, frame->model_error);
+    frame->late = common_lateness(frame->as_kept, checked.loop, cv_errors(*frame, checked.loop));
     if (frame->late.any())
       checked = judged_by(*frame, {kModelCheck}, assessment.record);
   }
-  std::vector<std::string> methods = options.methods;
-  const auto has = [&methods](const char* name) {
-    return std::find(methods.begin(), methods.end(), name) != methods.end();
-  };
-  const bool adds_odds = has("mpmbench") && !has(kOdds);  // it has asked for them, so that they cost nothing
-  if (adds_odds)
-    methods.emplace_back(kOdds);
+  std::vector<std::string> methods = with_verdict_first(options.methods);
+  methods.emplace_back(kOdds);  // the verdict has asked for them, so that they cost nothing
   JudgedRecord judged = judged_by(*frame, methods, assessment.record);
-  if (adds_odds) {
-    assessment.odds = std::move(judged.said.back());
-    judged.said.pop_back();
-  }
+  for (const std::string& asked : options.methods)
+    assessment.said.push_back(judged.said[static_cast<std::size_t>(
+        std::find(methods.begin(), methods.end(), asked) - methods.begin())]);
+  assessment.sources = std::move(judged.said.front());
+  assessment.odds = std::move(judged.said.back());
   assessment.record.benchmark = judged.benchmark;
   assessment.loop = std::move(judged.loop);
   assessment.model = std::move(checked.said.front());
-  assessment.said = std::move(judged.said);
   frame->habit = judged.habit;
   assessment.unexplained =
       unexplained_cvs(frame->as_kept, assessment.loop, frame->model_error, frame->habit.get());

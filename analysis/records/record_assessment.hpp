@@ -17,7 +17,7 @@ namespace mpm {
 
 /// How a record is assessed.
 struct AssessOptions {
-  std::vector<std::string> methods{"mpmbench"};  ///< the first one has the word on the source of a fault
+  std::vector<std::string> methods{"mpmbench"};  ///< shown beside the verdict, which is that of `mpmbench`
   /// Standard deviation of the errors that a healthy model may have, of gain, time constants and dead time of
   /// every channel; 0: the model is exact.
   double model_error = 0.05;

@@ -11,7 +11,6 @@
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/records/cost_of_record.hpp"
 #include "analysis/records/model_check.hpp"
-#include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/untold_part.hpp"
 #include "analysis/validation/benchmark_period.hpp"
 #include "base/error.hpp"
@@ -117,10 +116,6 @@ void add_costs(const RecordFrame& frame, const PlantRecord& record, AssessmentRe
 std::pair<Eigen::Index, Eigen::Index> best_period(const RecordFrame& frame, const AssessedLoop& loop) {
   const Eigen::Index fewest = window_scan(frame.as_kept).longest + kFewestCorrelatedPairs;
   return quietest_period(loop.y - loop.y_sim, loop.u, std::max(loop.samples() / kBenchmarkShare, fewest));
-}
-
-const Study& RecordFrame::study_of(const std::string& method) const {
-  return needs_every_sample(*this, method) ? closed : as_kept;
 }
 
 std::vector<bool> unknown_samples(const PlantRecord& record) {

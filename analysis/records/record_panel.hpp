@@ -11,8 +11,8 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "analysis/methods/assessment_record.hpp"
 #include "analysis/methods/method_panel.hpp"
+#include "analysis/methods/ours/fault_comparison.hpp"
 #include "analysis/records/channel_error_fit.hpp"
-#include "analysis/records/record_alternatives.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
 
@@ -40,8 +40,6 @@ struct RecordFrame {
   LateCvs late = {};             ///< common_lateness() of the record
   Eigen::Index since = 0;        ///< sample from which on costs are asked for besides
   std::shared_ptr<const ModelHabit> habit = {};  ///< JudgedRecord::habit of the record
-
-  const Study& study_of(const std::string& method) const;
 };
 
 /// A record with what the methods of the frame say of it.

@@ -31,7 +31,7 @@ std::vector<bool> counted_samples(const AssessedLoop& loop) {
   return counted;
 }
 
-/// The channel that the verdict would repair: that of the mismatch that the first method names, or else
+/// The channel that the verdict would repair: that of the mismatch that `mpmbench` names, or else
 /// `likelihood`, or else the first one that they name at the dearest CV, or else the likeliest one. It is
 /// identified again where the errors that the model has beside it are known by their size.
 std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const AssessedLoop& loop,
@@ -41,7 +41,7 @@ std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const
   const OperatingPoint& point = frame.basis.point;
   const Eigen::Index dearest = assessment.verdict.named_cv();
   const AssessmentRecord* answer = nullptr;
-  for (const AssessmentRecord* const said : {&assessment.said.front(), &assessment.odds})
+  for (const AssessmentRecord* const said : {&assessment.sources, &assessment.odds})
     if (channel_to_repair(*said) && (answer == nullptr || !answer->named_mismatch()))
       answer = said;
   const auto identified = [&](const Channel& channel, const std::optional<MismatchParameter>& only) {

@@ -16,7 +16,6 @@
 #include "analysis/basis/basis_runs.hpp"
 #include "analysis/experiment/experiment.hpp"
 #include "analysis/experiment/judgement.hpp"
-#include "analysis/methods/method_table.hpp"
 #include "analysis/records/model_check.hpp"
 #include "analysis/records/verdict_evidence.hpp"
 #include "analysis/study_files/recorded_study.hpp"
@@ -75,13 +74,10 @@ bool is_named_by_methods(RecordSource source) {
          source == RecordSource::both || source == RecordSource::valve;
 }
 
-/// The methods that every simulated record is asked for. The first one, where it tells sources, costs more
-/// than all else, and only its sources count, where the model does not explain the record.
+/// The methods that every simulated record is asked for. The first one costs more than all else, and only its
+/// sources count, where the model does not explain the record.
 std::vector<std::string> asked_of_all(const RecordFrame& frame) {
-  std::vector<std::string> names = frame.methods;
-  if (method_table(frame.as_kept.assessment).method(names.front()).tells_sources)
-    names.erase(names.begin());
-  return names;
+  return {frame.methods.begin() + 1, frame.methods.end()};
 }
 
 /// Asks the first method of the frame of the loops `unexplained` only, and the others of all; null: all of
@@ -142,12 +138,13 @@ CountsOfSource add_trial(RecordAssessment& assessment, const Study& study,
                       static_cast<std::int64_t>(loops.records.size()),
                       {},
                       trial_findings(made->study, last, loops.records, assessment.model)};
-    const std::size_t unasked = assessment.said.size() - last;  // 1, or 0
-    for (std::size_t method = 0; method < assessment.said.size(); ++method)
-      trial.methods.push_back(method < unasked
+    for (const AssessmentRecord& said : assessment.said) {
+      const auto place = std::find(always.begin(), always.end(), said.form->method().name) - always.begin();
+      trial.methods.push_back(place == std::ssize(always)
                                   ? std::nullopt
-                                  : std::optional(trial_findings(made->study, method - unasked, loops.records,
-                                                                 assessment.said[method])));
+                                  : std::optional(trial_findings(made->study, static_cast<std::size_t>(place),
+                                                                 loops.records, said)));
+    }
     const Eigen::Index ny = assessment.study.cv_count();
     trial.cost = number_thresholds(loops.records, last, kCostNumber, ny);
     trial.cost_since = number_thresholds(loops.records, last, kCostSinceNumber, ny);
@@ -155,15 +152,13 @@ CountsOfSource add_trial(RecordAssessment& assessment, const Study& study,
     trial.health = number_thresholds(loops.records, last, "health", 1)(0);
     trial.counts = trial_counts(loops.records, last, trial.model);
     assessment.trial = std::move(trial);
-    return [loops, run, last, unasked, methods = frame->methods,
-            model = assessment.trial->model](RecordSource named) {
+    return [loops, run, last, methods = frame->methods, model = assessment.trial->model](RecordSource named) {
       if (!is_named_by_methods(named))
         return trial_counts(loops.records, last, model);
       const auto asked = std::make_shared<std::set<std::int64_t>>();
       for (const std::int64_t index : unexplained_records(loops.records, last, model))
         asked->insert(index);
-      const TrialLoops of_sources = unasked == 0 ? loops : run(methods, asked);
-      return trial_counts(of_sources.records, last + unasked, model, named);
+      return trial_counts(run(methods, asked).records, last + 1, model, named);
     };
   } catch (const InputError& error) {
     assessment.no_trial = fmt::format("no loop like this one can be simulated: {}", error.what());

@@ -226,7 +226,8 @@ void add_assess(CommandSet& commands) {
       [options, &commands] { return assess(*options, commands.command_line()); });
   add_path(app, "STUDY", options->study, "Study file, or name of a shipped study")->required();
   add_path(app, "DATA", options->data, "Records of the loop (CSV or netCDF-4)")->required();
-  add_methods_option(app, options->methods, "Methods, separated by commas; the first one gives the verdict");
+  add_methods_option(app, options->methods,
+                     "Methods to show beside the verdict, which is that of mpmbench, separated by commas");
   add_path(app, "-o,--output", options->page, "Page to write (HTML)");
   app.add_option("--window", options->window, "Length of a window that moves over the record, in samples")
       ->check(whole_number(1, 1000000000));

@@ -4,9 +4,9 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include "analysis/methods/ours/coloured_noise.hpp"
 #include "analysis/statistics/chi_squared.hpp"
 #include "base/non_finite.hpp"
 
@@ -20,6 +20,14 @@ constexpr Eigen::Index kOtherLags = 6, kOwnLags = 12;
 
 constexpr int kFits = 3;
 constexpr Eigen::Index kFewestInPart = 50;  ///< to either side of a change of the noise
+constexpr double kRounding = 1e-14;         ///< of the mean square of the errors: less left is none
+
+constexpr Eigen::Index kLags = kErrorOrder + 1, kLagPairs = kLags * (kLags + 1) / 2;
+
+/// The place of a pair of lags, l <= m, in LaggedProducts.
+constexpr Eigen::Index pair_of(Eigen::Index l, Eigen::Index m) {
+  return l * kLags - l * (l - 1) / 2 + m - l;
+}
 
 /// Q of A = Q R, n x m.
 Columns basis_of(const Columns& A) {
@@ -75,148 +83,301 @@ Columns known_errors(const AssessedLoop& loop, Eigen::Index samples) {
   return past_errors(loop, asked);
 }
 
-/// What is known of a part, and the noise that it has.
-struct NoisePart {
-  LaggedProducts Xe, FX, FF, Fe;
-  double variance;
-  Eigen::VectorXd a = Eigen::VectorXd::Zero(kErrorOrder);
+/// A part with a hypothesis T in it, and the noise that it has: an autoregression a, and the mean square of
+/// its innovations.
+struct PartUnderHypothesis {
+  const LaggedProducts& known;  ///< of Z = [X E_i e]
+  LaggedProducts across, own;   ///< of Z and T, of T and T
+  Eigen::VectorXd a;
+  double count = 0.0, least = 0.0, variance = 0.0;
+
+  /// Z x + T y is noise, of the autoregression a.
+  void start(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Part part) {
+    count = static_cast<double>(part.first + part.count - std::max(part.first, kErrorOrder));
+    least = std::max(1e-300, kRounding * lagged(x, y)(0, 0) / count);
+    take(x, y, false);
+  }
+
+  /// Takes the variance that Z x + T y has beside a, and then the a that it has.
+  void take(const Eigen::VectorXd& x, const Eigen::VectorXd& y, bool fits) {
+    const Eigen::MatrixXd R = lagged(x, y);
+    Eigen::VectorXd factors(kLags);
+    factors << 1.0, -a;
+    variance = std::max(least, factors.dot(R * factors) / count);
+    if (!fits)
+      return;
+    Eigen::MatrixXd past = R.bottomRightCorner(kErrorOrder, kErrorOrder);
+    past.diagonal().array() += 1e-12 * past.trace() + 1e-300;
+    a = past.ldlt().solve(R.col(0).tail(kErrorOrder));
+  }
+
+  /// Of Z = [. e] (p and e) and T (q of any size, and h): those of the p and q, whose right side is that of e
+  /// - h.
+  Columns normal_equations(Eigen::Index p, Eigen::Index q, Eigen::VectorXd& right) const {
+    const Columns of_known = known.whitened_by(a), of_both = across.whitened_by(a),
+                  of_own = own.whitened_by(a);
+    Columns A(p + q, p + q);
+    A << of_known.topLeftCorner(p, p), of_both.topLeftCorner(p, q), of_both.topLeftCorner(p, q).transpose(),
+        of_own.topLeftCorner(q, q);
+    right.resize(p + q);
+    right << of_known.col(p).head(p), of_both.row(p).head(q).transpose();
+    if (of_own.cols() > q) {
+      right.head(p) -= of_both.col(q).head(p);
+      right.tail(q) -= of_own.col(q).head(q);
+    }
+    right /= variance;
+    return A / variance;
+  }
+
+ private:
+  /// Products of Z x + T y late by l and m samples.
+  Eigen::MatrixXd lagged(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const {
+    Eigen::VectorXd pairs = known.of(x, x);
+    if (y.size() > 0)
+      pairs += 2.0 * across.of(x, y) + own.of(y, y);
+    Eigen::MatrixXd R(kLags, kLags);
+    for (Eigen::Index l = 0; l < kLags; ++l)
+      for (Eigen::Index m = l; m < kLags; ++m)
+        R(l, m) = R(m, l) = (l == m ? 1.0 : 0.5) * pairs(pair_of(l, m));
+    return R;
+  }
 };
 
 }  // namespace
+
+LaggedProducts::LaggedProducts(const Columns& A, const Columns& B, Part part)
+    : rows_(A.cols()), columns_(B.cols()), pairs_(rows_ * columns_, kLagPairs) {
+  const Eigen::Index end = part.first + part.count, first = std::max(part.first, kErrorOrder);
+  const Eigen::Index count = end - first, before = first - kErrorOrder;
+  // B late by the lags -6 ... 6 beside A, whose rows begin at `before`: of A_0' B_m the samples from `first`
+  // on, of A_l' B_0 those from `first` - l on.
+  Columns shifted = Columns::Zero(count + kErrorOrder, (2 * kLags - 1) * columns_);
+  for (Eigen::Index lag = 0; lag < kLags; ++lag) {
+    shifted.middleCols((kErrorOrder + lag) * columns_, columns_).bottomRows(count) =
+        B.middleRows(first - lag, count);
+    shifted.middleCols((kErrorOrder - lag) * columns_, columns_).middleRows(kErrorOrder - lag, count) =
+        B.middleRows(first, count);
+  }
+  const Columns sums = A.middleRows(before, count + kErrorOrder).transpose() * shifted;
+  // A_l' B_m for the difference m - l, and for that of the other sign; one sample later one enters at the
+  // start, and one leaves at the end.
+  const auto slid = [&](Columns& sum, Eigen::Index l, Eigen::Index m) {
+    sum += A.row(first - 1 - l).transpose() * B.row(first - 1 - m) -
+           A.row(end - 1 - l).transpose() * B.row(end - 1 - m);
+  };
+  for (Eigen::Index lag = 0; lag < kLags; ++lag) {
+    Columns above = sums.middleCols((kErrorOrder + lag) * columns_, columns_);
+    Columns below = sums.middleCols((kErrorOrder - lag) * columns_, columns_);
+    for (Eigen::Index l = 0; l + lag < kLags; ++l) {
+      pairs_.col(pair_of(l, l + lag)) = above.reshaped();
+      if (lag > 0)
+        pairs_.col(pair_of(l, l + lag)) += below.reshaped();
+      if (l + lag + 1 == kLags)
+        break;
+      slid(above, l, l + lag);
+      slid(below, l + lag, l);
+    }
+  }
+}
+
+LaggedProducts& LaggedProducts::operator+=(const LaggedProducts& more) {
+  pairs_ += more.pairs_;
+  return *this;
+}
+
+Columns LaggedProducts::whitened_by(const Eigen::VectorXd& a) const {
+  Eigen::VectorXd factors(kLags), products(kLagPairs);
+  factors << 1.0, -a;
+  for (Eigen::Index l = 0; l < kLags; ++l)
+    for (Eigen::Index m = l; m < kLags; ++m)
+      products(pair_of(l, m)) = factors(l) * factors(m);
+  const Eigen::VectorXd sum = pairs_ * products;
+  return sum.reshaped(rows_, columns_);
+}
+
+Eigen::VectorXd LaggedProducts::of(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const {
+  const Columns weights = x * y.transpose();
+  return pairs_.transpose() * weights.reshaped();
+}
 
 CvErrors::CvErrors(const AssessedLoop& loop, Eigen::Index cv, std::vector<Eigen::Index> samples,
                    const Eigen::VectorXd& e, const Columns& X)
     : samples_(std::move(samples)) {
   const Columns others = others_errors(loop, cv, e.size());
-  const Eigen::Index p = X.size() == 0 ? 0 : X.cols();
-  X_.resize(e.size(), p + others.cols());
-  if (p > 0)
-    X_.leftCols(p) = X;
-  X_.rightCols(others.cols()) = others(samples_, Eigen::all);
-  prior_ = Eigen::VectorXd::Zero(X_.cols());
-  prior_.head(p).setOnes();
+  const Eigen::Index n = e.size(), p = X.size() == 0 ? 0 : X.cols();
   if (!loop.untold.empty()) {
     const Columns untold = loop.untold[static_cast<std::size_t>(cv)](Eigen::all, samples_).transpose();
     Q_ = basis_of(untold);
   }
-  e_ = told(e);
-  divide(e_.size());
+  Xe_.resize(n, p + others.cols() + 1);
+  if (p > 0)
+    Xe_.leftCols(p) = told(X);
+  Xe_.middleCols(p, others.cols()) = others(samples_, Eigen::all);
+  errors_ = p;
+  Xe_.rightCols(1) = told(e);
+  if (is_too_short())
+    return;
+  parts_ = {{{0, n}, {Xe_, Xe_, {0, n}}, Eigen::VectorXd::Zero(kErrorOrder)}};
+  none_ = settled(parts_);
 }
 
-void CvErrors::find_change(Eigen::Index onset) {
-  constexpr Eigen::Index kTried = 12;
-  const double penalty = 0.5 * (kErrorOrder + 2.0) * log_samples();
-  Eigen::Index best = e_.size();
-  double most = none_;
-  const auto take = [&](Eigen::Index change) {
-    if (change < kFewestInPart || e_.size() - change < kFewestInPart)
-      return;
-    divide(change);
-    if (none_ - penalty > most) {
-      most = none_ - penalty;
-      best = change;
+void CvErrors::find_change() {
+  constexpr Eigen::Index kTried = 24;
+  const Eigen::Index n = Xe_.rows();
+  if (is_too_short())
+    return;
+  std::vector<NoisePart> between;  // the changes
+  Eigen::Index first = 0;
+  for (Eigen::Index part = 1; part <= kTried; ++part) {
+    const Eigen::Index change = part * n / kTried;
+    if (change < n && (change < kFewestInPart || n - change < kFewestInPart))
+      continue;
+    const Part here{first, change - first};
+    between.push_back({here, {Xe_, Xe_, here}, parts_.front().a});
+    first = change;
+  }
+  if (between.size() < 2)
+    return;
+  const auto joined = [&between](std::size_t from, std::size_t to) {
+    NoisePart all = between[from];
+    for (std::size_t i = from + 1; i < to; ++i) {
+      all.part.count += between[i].part.count;
+      all.known += between[i].known;
     }
+    return all;
   };
-  take(std::lower_bound(samples_.begin(), samples_.end(), onset) - samples_.begin());
-  for (Eigen::Index part = 1; part < kTried; ++part)
-    take(part * e_.size() / kTried);
-  divide(best);
+  const double penalty =
+      0.5 * static_cast<double>(kErrorOrder + 2 + Xe_.cols() - 1 - errors_) * log_samples();
+  double most = none_;
+  for (std::size_t change = 1; change < between.size(); ++change) {
+    std::vector<NoisePart> parts{joined(0, change), joined(change, between.size())};
+    const double here = settled(parts);
+    if (here - penalty > most) {
+      most = here - penalty;
+      none_ = here;
+      parts_ = std::move(parts);
+    }
+  }
 }
 
 double CvErrors::dependence(const AssessedLoop& loop, const Eigen::RowVectorXd& h, const Columns& free,
                             const Columns& moves) const {
   constexpr double kChance = 0.01;  // over all CVs
-  if (e_.size() <= kErrorOrder)
+  constexpr double kSame = 1e-10;   // eigenvalues of what the moves have beside the past, over the largest
+  if (is_too_short())
     return kNaN;
-  const Columns past = known_errors(loop, e_.size());
+  const Columns past = known_errors(loop, Xe_.rows());
   const double level = kChance / static_cast<double>(loop.y.rows());
-  Eigen::VectorXd left;
-  log_likelihood(e_ - told(h(samples_).transpose()), told_columns(free), &left);
-  const Part& last = parts_.back();
+  const Columns hypothesis = told_columns(free, &h);
+  const Fit best = fit(parts_, hypothesis, free.cols());
+  const Part last = parts_.back().part;
   const auto since = [this, &last](const Columns& signals) -> Columns {
-    return last.of(signals(samples_, Eigen::all));
+    return signals(std::vector<Eigen::Index>(samples_.end() - last.count, samples_.end()), Eigen::all);
   };
+  Eigen::VectorXd w =
+      Xe_.bottomRows(last.count) * best.of_known + hypothesis.bottomRows(last.count) * best.of_hypothesis;
   Columns P(last.count, past.cols() + 1), M = since(moves);
   P << since(past), Eigen::VectorXd::Ones(last.count);
-  const Columns known = basis_of(P);
-  M -= known * (known.transpose() * M);
-  Eigen::VectorXd w = last.of(left);
-  w -= known * (known.transpose() * w);
-  Eigen::ColPivHouseholderQR<Columns> qr(M);
-  const Eigen::Index p = qr.rank();
-  if (p == 0 || last.count <= known.cols() + p || w.isZero(0.0))
+  const Eigen::VectorXd sizes = M.colwise().norm().transpose().cwiseMax(1e-300);
+  M = M * sizes.cwiseInverse().asDiagonal();
+  Columns PP = P.transpose() * P;
+  PP.diagonal() *= 1.0 + 1e-13;
+  const Eigen::LDLT<Columns> known(PP);
+  M -= P * known.solve(P.transpose() * M);
+  w -= P * known.solve(P.transpose() * w);
+  const Eigen::SelfAdjointEigenSolver<Columns> of_moves(M.transpose() * M);
+  const Eigen::VectorXd& values = of_moves.eigenvalues();
+  const Eigen::Index p = (values.array() > kSame).count();
+  if (p == 0 || last.count <= P.cols() + p || w.isZero(0.0))
     return kNaN;
-  const Columns Z = qr.householderQ() * Columns::Identity(last.count, p);
-  const Eigen::VectorXd Zw = Z.transpose() * w;
-  const Columns S = Z.transpose() * w.array().square().matrix().asDiagonal() * Z;
-  return Zw.dot(S.ldlt().solve(Zw)) / chi_squared_upper_quantile(level, static_cast<double>(p));
+  const Columns V = of_moves.eigenvectors().rightCols(p);
+  const Eigen::VectorXd Mw = V.transpose() * (M.transpose() * w);
+  const Columns wM = w.asDiagonal() * M;
+  const Columns S = V.transpose() * (wM.transpose() * wM) * V;
+  return Mw.dot(S.ldlt().solve(Mw)) / chi_squared_upper_quantile(level, static_cast<double>(p));
 }
 
-void CvErrors::divide(Eigen::Index change) {
-  parts_ = {{0, change}};
-  if (change < e_.size())
-    parts_.push_back({change, e_.size() - change});
-  XX_.clear();
-  if (e_.size() <= kErrorOrder)
-    return;
-  for (const Part& part : parts_) {
-    const Columns X = part.of(X_);
-    XX_.emplace_back(X, X);
+Columns CvErrors::told_columns(const Columns& free, const Eigen::RowVectorXd* h) const {
+  const Eigen::Index q = free.cols();
+  Columns H(Xe_.rows(), q + (h != nullptr ? 1 : 0));
+  H.leftCols(q) = free(samples_, Eigen::all);
+  if (h != nullptr)
+    H.col(q) = (*h)(samples_).transpose();
+  return told(std::move(H));
+}
+
+Columns CvErrors::told(Columns signals) const {
+  if (Q_.size() > 0)
+    signals -= Q_ * (Q_.transpose() * signals);
+  return signals;
+}
+
+double CvErrors::settled(std::vector<NoisePart>& parts) const {
+  constexpr int kMostRounds = 10;
+  constexpr double kNext = 0.05;  // of L
+  double most = -kInfinity;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Fit best = fit(parts, Columns(Xe_.rows(), 0), 0);
+    if (best.log_likelihood < most + kNext)
+      break;
+    most = best.log_likelihood;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      parts[i].a = best.noises[i];
   }
-  none_ = log_likelihood(e_, Columns(e_.size(), 0));
+  return most;
 }
 
-Columns CvErrors::told_columns(const Columns& free) const {
-  Columns H(e_.size(), free.cols());
-  for (Eigen::Index column = 0; column < free.cols(); ++column)
-    H.col(column) = told(free.col(column)(samples_));
-  return H;
-}
-
-double CvErrors::log_likelihood(const Eigen::VectorXd& e, const Columns& free, Eigen::VectorXd* left) const {
-  if (e.size() <= kErrorOrder)
-    return 0.0;
-  const Eigen::Index p = X_.cols(), q = free.cols();
-  std::vector<NoisePart> noises;
-  for (const Part& part : parts_) {
-    const Columns X = part.of(X_), F = part.of(free), own = part.of(e);
-    noises.push_back({{X, own},
-                      {F, X},
-                      {F, F},
-                      {F, own},
-                      std::max(1e-300, own.squaredNorm() / static_cast<double>(part.count))});
+CvErrors::Fit CvErrors::fit(const std::vector<NoisePart>& parts, const Columns& hypothesis,
+                            Eigen::Index free) const {
+  Fit best{0.0, Eigen::VectorXd::Zero(Xe_.cols()), Eigen::VectorXd::Zero(hypothesis.cols())};
+  if (is_too_short())
+    return best;
+  const Eigen::Index p = Xe_.cols() - 1, own = p - errors_, q = free, all_own = std::ssize(parts) * own,
+                     unknown = errors_ + all_own + q;
+  // [X E_i e] x + [F h] y is left: e - h at first. The unknown a, the b of each part, and those of F.
+  Eigen::VectorXd x = Eigen::VectorXd::Unit(p + 1, p), y = Eigen::VectorXd::Zero(hypothesis.cols());
+  y.tail(hypothesis.cols() - q).setConstant(-1.0);
+  std::vector<PartUnderHypothesis> all;
+  for (const NoisePart& part : parts) {
+    all.push_back({part.known, {Xe_, hypothesis, part.part}, {hypothesis, hypothesis, part.part}, part.a});
+    all.back().start(x, y, part.part);
   }
-  Eigen::VectorXd of_errors, errors = e;
+  const auto places_of = [&](Eigen::Index part) {
+    std::vector<Eigen::Index> places;
+    for (Eigen::Index column = 0; column < p + q; ++column)
+      places.push_back(column < errors_ ? column
+                       : column < p     ? column + part * own
+                                        : column - p + unknown - q);
+    return places;
+  };
   for (int pass = 0; pass < kFits; ++pass) {
-    Columns A = Columns::Zero(p + q, p + q);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(p + q);
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const NoisePart& noise = noises[i];
-      const Columns FX = noise.FX.whitened_by(noise.a);
-      A.topLeftCorner(p, p) += XX_[i].whitened_by(noise.a) / noise.variance;
-      A.topRightCorner(p, q) += FX.transpose() / noise.variance;
-      A.bottomLeftCorner(q, p) += FX / noise.variance;
-      A.bottomRightCorner(q, q) += noise.FF.whitened_by(noise.a) / noise.variance;
-      right.head(p) += noise.Xe.whitened_by(noise.a) / noise.variance;
-      right.tail(q) += noise.Fe.whitened_by(noise.a) / noise.variance;
+    Columns A = Columns::Zero(unknown, unknown);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(unknown);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::vector<Eigen::Index> places = places_of(static_cast<Eigen::Index>(i));
+      Eigen::VectorXd r;
+      A(places, places) += all[i].normal_equations(p, q, r);
+      right(places) += r;
     }
-    A.diagonal().head(p) += prior_;
+    A.diagonal().head(errors_).array() += 1.0;
     A.diagonal().array() += 1e-12;
-    of_errors = A.ldlt().solve(right);
-    errors = e - X_ * of_errors.head(p) - free * of_errors.tail(q);
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const Eigen::VectorXd own = parts_[i].of(errors), w = mpm::whitened_by(noises[i].a, own);
-      noises[i].variance = std::max(1e-300, w.squaredNorm() / static_cast<double>(w.size()));
-      if (pass + 1 < kFits)
-        noises[i].a = autoregression_of(own, kErrorOrder);
+    const Eigen::VectorXd sizes = A.ldlt().solve(right);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const std::vector<Eigen::Index> places = places_of(static_cast<Eigen::Index>(i));
+      const Eigen::VectorXd of_part = sizes(places);
+      x.head(p) = -of_part.head(p);
+      y.head(q) = -of_part.tail(q);
+      all[i].take(x, y, pass + 1 < kFits);
     }
+    best.log_likelihood = -0.5 * sizes.head(errors_).squaredNorm();
   }
-  if (left != nullptr)
-    *left = errors;
-  double sum = -0.5 * prior_.dot(of_errors.head(p).cwiseAbs2());
-  for (std::size_t i = 0; i < parts_.size(); ++i)
-    sum -= 0.5 * static_cast<double>(parts_[i].count) * std::log(noises[i].variance);
-  return sum;
+  for (const PartUnderHypothesis& part : all)
+    best.noises.push_back(part.a);
+  best.of_known = std::move(x);
+  best.of_hypothesis = std::move(y);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    best.log_likelihood -= 0.5 * static_cast<double>(parts[i].part.count) * std::log(all[i].variance);
+  return best;
 }
 
 }  // namespace mpm

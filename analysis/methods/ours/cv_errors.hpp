@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,49 +16,29 @@ using Columns = Eigen::MatrixXd;
 /// Order of the autoregression of the noise: approximates a disturbance behind two lags beside white noise.
 inline constexpr Eigen::Index kErrorOrder = 6;
 
-/// A_l' B_m of signals (n x .) that are l and m samples late, l, m <= kErrorOrder, over the samples that have
-/// a past of this length. The products of signals that an autoregression whitens follow from them without the
-/// signals:
-///
-///   (A_0 - sum_l a_l A_l)' (B_0 - sum_m a_m B_m)
+/// Some of the samples of a record, which follow each other.
+struct Part {
+  Eigen::Index first, count;
+};
+
+/// sum_k A(k - l)' B(k - m), 0 <= l, m <= kErrorOrder, over the samples k of a part of signals A (n x p) and
+/// B (n x q) that have a past of this length. The products of signals that an autoregression a whitens follow
+/// from them without the signals. Only sums over l and m are kept in which (l, m) and (m, l) count alike.
 class LaggedProducts {
  public:
-  LaggedProducts(const Columns& A, const Columns& B) {
-    const Eigen::Index n = A.rows(), count = n - kErrorOrder;
-    const auto late = [count](const Columns& signals, Eigen::Index lag) {
-      return signals.middleRows(kErrorOrder - lag, count);
-    };
-    for (Eigen::Index m = 0; m < kLags; ++m)
-      at(0, m) = late(A, 0).transpose() * late(B, m);
-    for (Eigen::Index l = 1; l < kLags; ++l)
-      at(l, 0) = &A == &B ? Columns(at(0, l).transpose()) : Columns(late(A, l).transpose() * late(B, 0));
-    // One sample later a sample enters at the start, and one leaves at the end.
-    for (Eigen::Index l = 0; l + 1 < kLags; ++l)
-      for (Eigen::Index m = 0; m + 1 < kLags; ++m)
-        at(l + 1, m + 1) = at(l, m) + A.row(kErrorOrder - 1 - l).transpose() * B.row(kErrorOrder - 1 - m) -
-                           A.row(n - 1 - l).transpose() * B.row(n - 1 - m);
-  }
+  LaggedProducts(const Columns& A, const Columns& B, Part part);
 
-  Columns whitened_by(const Eigen::VectorXd& a) const {
-    Eigen::VectorXd factors(kLags);
-    factors << 1.0, -a;
-    Columns sum = Columns::Zero(products_.front().rows(), products_.front().cols());
-    for (Eigen::Index l = 0; l < kLags; ++l)
-      for (Eigen::Index m = 0; m < kLags; ++m)
-        if (const double factor = factors(l) * factors(m); factor != 0.0)
-          sum += factor * at(l, m);
-    return sum;
-  }
+  LaggedProducts& operator+=(const LaggedProducts& more);
+
+  /// (A_0 - sum_l a_l A_l)' (B_0 - sum_m a_m B_m), p x q, A_l being l samples late
+  Columns whitened_by(const Eigen::VectorXd& a) const;
+
+  /// The same products of the signals A x and B y, over l < m twice: kLagPairs.
+  Eigen::VectorXd of(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
 
  private:
-  static constexpr Eigen::Index kLags = kErrorOrder + 1;
-
-  Columns& at(Eigen::Index l, Eigen::Index m) { return products_[static_cast<std::size_t>(l * kLags + m)]; }
-  const Columns& at(Eigen::Index l, Eigen::Index m) const {
-    return products_[static_cast<std::size_t>(l * kLags + m)];
-  }
-
-  std::array<Columns, static_cast<std::size_t>(kLags* kLags)> products_;
+  Eigen::Index rows_, columns_;
+  Eigen::MatrixXd pairs_;  ///< rows x columns of a pair of lags in each column
 };
 
 /// The errors e of CV i over the n samples that are there, and how likely they are under a hypothesis h:
@@ -71,7 +49,8 @@ class LaggedProducts {
 /// with X the responses to errors of a healthy model, E_i the errors of the other CVs in up to six samples
 /// before (those above i also in the same sample), which have a disturbance that reaches several CVs, n an
 /// autoregression of the order kErrorOrder, which has one of any shape, and s^2 the mean square of its
-/// innovations. From some sample on n may be another autoregression.
+/// innovations. From some sample on n may be another autoregression, and b other sizes. The best a and b, and
+/// the noise, follow from LaggedProducts: a further hypothesis costs those of its h alone.
 class CvErrors {
  public:
   /// `samples` of the loop, e (n) at them, and X (n x p, or empty). The errors of the other CVs are those of
@@ -79,20 +58,31 @@ class CvErrors {
   CvErrors(const AssessedLoop& loop, Eigen::Index cv, std::vector<Eigen::Index> samples,
            const Eigen::VectorXd& e, const Columns& X);
 
-  /// Lets the noise be another one from the best of some samples on, or from `onset` on, where that explains
-  /// the errors better.
-  void find_change(Eigen::Index onset);
+  /// Lets the noise be another one from the best of some samples on, where that explains the errors better.
+  void find_change();
 
   double none() const { return none_; }
-  double log_samples() const { return std::log(static_cast<double>(e_.size())); }
+  /// The sample of the loop from which on the noise is another one; 0: it is the same throughout.
+  Eigen::Index change() const {
+    return parts_.size() < 2 ? 0 : samples_[static_cast<std::size_t>(parts_.back().part.first)];
+  }
+  double log_samples() const { return std::log(static_cast<double>(samples_.size())); }
 
   /// With h (N of the loop) taken off.
   double without(const Eigen::RowVectorXd& h) const { return without(h, Columns(h.size(), 0)); }
   /// The same with these columns (N of the loop, each of any size) in it.
   double without(const Eigen::RowVectorXd& h, const Columns& free) const {
-    return log_likelihood(e_ - told(h(samples_).transpose()), told_columns(free));
+    return fit(parts_, told_columns(free, &h), free.cols()).log_likelihood;
   }
-  double with(const Columns& free) const { return log_likelihood(e_, told_columns(free)); }
+  double with(const Columns& free) const {
+    return fit(parts_, told_columns(free, nullptr), free.cols()).log_likelihood;
+  }
+  /// The most likely size of a signal (N of the loop) in the errors, beside these columns.
+  double size_of(const Eigen::RowVectorXd& h, const Columns& free) const {
+    Columns all(h.size(), free.cols() + 1);
+    all << h.transpose(), free;
+    return -fit(parts_, told_columns(all, nullptr), all.cols()).of_hypothesis(0);
+  }
 
   /// input_dependence() since the noise changed, where h and `free` are in the errors; `moves` of the inputs
   /// (N of the loop).
@@ -100,31 +90,38 @@ class CvErrors {
                     const Columns& moves) const;
 
  private:
-  /// Samples that follow each other.
-  struct Part {
-    Eigen::Index first, count;
-
-    Columns of(const Columns& signals) const { return signals.middleRows(first, count); }
+  /// A part, the products of [X E_i e] with itself in it, and its noise.
+  struct NoisePart {
+    Part part;
+    LaggedProducts known;
+    Eigen::VectorXd a;  ///< of the noise without a hypothesis, from which that of each starts
   };
 
-  /// The noise changes after this many samples.
-  void divide(Eigen::Index change);
+  /// Of [X E_i e] and a hypothesis, in the last part, what is left.
+  struct Fit {
+    double log_likelihood = 0.0;  ///< 0 of a CV that has too few samples to tell anything
+    Eigen::VectorXd of_known, of_hypothesis;
+    std::vector<Eigen::VectorXd> noises = {};  ///< a of each part
+  };
 
-  Eigen::VectorXd told(const Eigen::VectorXd& signal) const {
-    return Q_.size() == 0 ? signal : Eigen::VectorXd(signal - Q_ * (Q_.transpose() * signal));
-  }
+  /// Of a hypothesis [F h] (n x q + 1, or F alone), with F of any size.
+  Fit fit(const std::vector<NoisePart>& parts, const Columns& hypothesis, Eigen::Index free) const;
 
-  Columns told_columns(const Columns& free) const;
+  /// L without a hypothesis, for which the noise of the parts is searched.
+  double settled(std::vector<NoisePart>& parts) const;
 
-  /// 0 of a CV that has too few samples to tell anything.
-  double log_likelihood(const Eigen::VectorXd& e, const Columns& free, Eigen::VectorXd* left = nullptr) const;
+  /// [F h] at the samples, less what no record can tell; null: F alone.
+  Columns told_columns(const Columns& free, const Eigen::RowVectorXd* h) const;
+
+  /// Signals (n x m) less what no record can tell.
+  Columns told(Columns signals) const;
+
+  bool is_too_short() const { return Xe_.rows() <= kErrorOrder; }
 
   std::vector<Eigen::Index> samples_;
-  Columns X_, Q_;
-  Eigen::VectorXd prior_;  ///< precision of the coefficients of X
-  std::vector<Part> parts_;
-  std::vector<LaggedProducts> XX_;  ///< of each part
-  Eigen::VectorXd e_;
+  Columns Xe_, Q_;           ///< [X E_i e], and an orthonormal basis of what no record can tell
+  Eigen::Index errors_ = 0;  ///< columns of X
+  std::vector<NoisePart> parts_;
   double none_ = 0.0;
 };
 

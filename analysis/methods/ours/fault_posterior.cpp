@@ -342,8 +342,8 @@ class FaultPosterior final : public AssessmentMethod {
       return answer(probabilities, fault_probabilities(known_->for_scores(), evidence), evidence);
     const std::vector<Eigen::MatrixXd> series = healthy_series(loop, errors, inputs);
     const std::vector<WhitenedErrors> whitened = whitened_errors(series);
-    // Of the record of a plant, whose noise nobody knows, RecordAlternatives asks for sensors and valves.
-    const bool asks_instruments = loop.from_start().untold.empty();
+    // Where nobody knows the noise, FaultComparison asks for sensors and valves.
+    const bool asks_instruments = !loop.has_unknown_noise();
     const InputWeights of_inputs = input_weights(evidence, series, whitened, inputs, asks_instruments);
     for (std::size_t i = 0; i < known_->models().size(); ++i)
       if (is_suspect(probabilities.cvs[i])) {

@@ -16,6 +16,7 @@ namespace mpm {
 struct LikelyMismatch {
   Eigen::Index place = -1;
   MismatchParameter parameter = MismatchParameter::gain;
+  Eigen::Index onset = 0;
   double gain = -kInfinity;
 };
 
@@ -26,9 +27,9 @@ Eigen::RowVectorXd input_of(const Study& study, const AssessedLoop& loop, Eigen:
 Eigen::RowVectorXd response_of(const Study& study, const TransferFunction& channel,
                                const Eigen::RowVectorXd& x);
 
-/// The best one of a CV, which begins at this sample of the loop: another gain of any size, or a time
-/// constant or dead time on a grid.
+/// The best one of a CV: a gain of 0.3 to 3.3 times that of the model, or a time constant or dead time on a
+/// grid, throughout or since the noise is another one (CvErrors::change()).
 LikelyMismatch likely_mismatch(const Study& study, const AssessedLoop& loop, const CvErrors& errors,
-                               Eigen::Index cv, Eigen::Index onset);
+                               Eigen::Index cv);
 
 }  // namespace mpm

@@ -9,8 +9,11 @@
 
 #include "analysis/basis/basis_runs.hpp"
 #include "analysis/indicators/loop_cost.hpp"
+#include "analysis/methods/ours/cv_errors.hpp"
+#include "analysis/methods/ours/fault_comparison.hpp"
 #include "analysis/methods/ours/learnt_context.hpp"
 #include "analysis/methods/ours/mismatch_responses.hpp"
+#include "analysis/methods/ours/source_weights.hpp"
 #include "analysis/records/channel_error_fit.hpp"
 #include "analysis/records/channel_health.hpp"
 #include "analysis/records/channel_information.hpp"
@@ -20,7 +23,6 @@
 #include "analysis/records/held_columns.hpp"
 #include "analysis/records/model_check.hpp"
 #include "analysis/records/model_habit.hpp"
-#include "analysis/records/record_alternatives.hpp"
 #include "analysis/records/record_panel.hpp"
 #include "analysis/records/record_verdict.hpp"
 #include "analysis/records/trial_record.hpp"
@@ -353,7 +355,32 @@ struct Suspect {
     return channel_response(discretise(study.plant.G(cv, mv), study.controller.sample_time), x, 0.0);
   }
   AssessedLoop loop() const { return judged_loop(frame, record); }
-  RecordAlternatives alternatives() const { return record_alternatives(frame.as_kept, loop(), 0.05, {}); }
+  static std::vector<CvErrors> errors(const RecordFrame& frame, const AssessedLoop& loop) {
+    const ChannelErrorFits fits(frame.as_kept, 0.05);
+    std::vector<CvErrors> all;
+    for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
+      const ChannelErrorFit fit = fits.of(loop, cv);
+      all.emplace_back(loop, cv, fit.samples, fit.e, fit.X);
+    }
+    return all;
+  }
+  FaultLikelihoods likelihoods() const {
+    const AssessedLoop seen = loop();
+    return FaultComparison(frame.as_kept, seen, errors(frame, seen)).likelihoods();
+  }
+  /// What the inputs tell beside a disturbance.
+  double dependence() const {
+    const AssessedLoop seen = loop();
+    return FaultComparison(frame.as_kept, seen, errors(frame, seen))
+        .dependence_beside(RecordSource::disturbance);
+  }
+  LateCvs lateness() const {
+    const AssessedLoop seen = loop();
+    std::vector<CvErrors> all = errors(frame, seen);
+    for (CvErrors& each : all)
+      each.find_change();
+    return common_lateness(frame.as_kept, seen, all);
+  }
 };
 
 TEST_CASE("a fault that begins within the record is dated, and none where nothing changes", "[records]") {
@@ -376,7 +403,7 @@ TEST_CASE("a fault that begins within the record is dated, and none where nothin
 TEST_CASE("columns of another clock are no error of the model, nor is a dead time another clock",
           "[records]") {
   const auto lateness = [](const Suspect& suspect) {
-    const LateCvs late = common_lateness(suspect.frame.as_kept, suspect.loop(), 0.05);
+    const LateCvs late = suspect.lateness();
     CHECK(late.cvs.empty());
     return late.samples;
   };
@@ -398,7 +425,7 @@ TEST_CASE("columns of another clock are no error of the model, nor is a dead tim
   CHECK(model_score(early.frame, early.record) < 1.2);
   Suspect one;
   one.record.y.row(0).head(N - 1) = Suspect{}.record.y.row(0).tail(N - 1);
-  const LateCvs found = common_lateness(one.frame.as_kept, one.loop(), 0.05);
+  const LateCvs found = one.lateness();
   CHECK(found.samples == -1.0);
   CHECK(found.cvs == std::vector<Eigen::Index>{0});
   one.frame.late = found;
@@ -409,11 +436,11 @@ TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever de
   Suspect drift, biased, stays, disturbed;
   const Eigen::Index N = drift.record.samples();
   drift.record.y.row(1) += Eigen::RowVectorXd::LinSpaced(N, -0.05, 0.15).cwiseMax(0.0);
-  const RecordAlternatives drifts = drift.alternatives();
+  const FaultLikelihoods drifts = drift.likelihoods();
   CHECK(drifts.sensor > std::max({drifts.disturbance, drifts.mismatch, drifts.valve, drifts.data}) + 5.0);
   CHECK((drifts.sensor_cv == 1 && !drifts.sensor_jumps));
   biased.record.y.row(1).tail(N / 3).array() += 0.15;
-  const RecordAlternatives jumps = biased.alternatives();
+  const FaultLikelihoods jumps = biased.likelihoods();
   CHECK(jumps.sensor > std::max({jumps.disturbance, jumps.mismatch, jumps.valve, jumps.data}) + 5.0);
   CHECK((jumps.sensor_cv == 1 && jumps.sensor_jumps));
   double position = 0.0;
@@ -422,7 +449,7 @@ TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever de
     each = position = std::abs(each - position) > 0.012 ? each : position;
   for (Eigen::Index cv = 0; cv < 2; ++cv)
     stays.record.y.row(cv) += stays.response(cv, 1, x - stays.record.u.row(1));
-  const RecordAlternatives sticks = stays.alternatives();
+  const FaultLikelihoods sticks = stays.likelihoods();
   // Ten times as probable as the others.
   CHECK(sticks.valve > std::max({sticks.disturbance, sticks.mismatch, sticks.sensor, sticks.data}) + 2.3);
   CHECK(sticks.valve_mv == 1);
@@ -430,7 +457,7 @@ TEST_CASE("a drift is a sensor's, and steps of a valve are a valve's, whoever de
   for (Eigen::Index k = 1; k < N; ++k)
     v(k) = 0.95 * v(k - 1) + 2.0 * v(k);
   disturbed.record.y.row(0) += v;
-  const RecordAlternatives slow = disturbed.alternatives();
+  const FaultLikelihoods slow = disturbed.likelihoods();
   CHECK(std::max({slow.valve, slow.sensor, slow.data}) < slow.disturbance + 5.0);
 }
 
@@ -457,12 +484,12 @@ TEST_CASE("a disturbance of an MV that begins within the record explains it, and
   Eigen::MatrixXd y_d(2, N);
   y_d << disturbed.response(0, 0, v), disturbed.response(1, 0, v);
   disturbed.record = recorded_loop(disturbed.study, with_gains(disturbed.study.plant.G, 1.02), 0, y_d);
-  const RecordAlternatives found = disturbed.alternatives();
+  const FaultLikelihoods found = disturbed.likelihoods();
   CHECK(found.disturbance > std::max({found.mismatch, found.valve, found.data}));
-  CHECK(found.fit[RecordSource::disturbance] < 1.0);
+  CHECK(disturbed.dependence() < 1.0);
   wrong.record = recorded_loop(
       wrong.study, with_mismatches(wrong.study.plant.G, {{0, 0, MismatchParameter::gain, 1.8}}), 0);
-  const RecordAlternatives mismatch = wrong.alternatives();
+  const FaultLikelihoods mismatch = wrong.likelihoods();
   CHECK(mismatch.mismatch > mismatch.disturbance + 20.0);
   REQUIRE(mismatch.named);
   CHECK(mismatch.named->channel == Channel{0, 0});
@@ -477,9 +504,9 @@ TEST_CASE("what test signals move beyond the model is no disturbance", "[records
   moved.record.u.row(0) += test;
   for (Eigen::Index cv = 0; cv < 2; ++cv)
     moved.record.y.row(cv) += moved.response(cv, 0, test);
-  CHECK(moved.alternatives().fit[RecordSource::disturbance] < 1.0);
+  CHECK(moved.dependence() < 1.0);
   moved.record.y.row(0) += moved.response(0, 0, test);
-  CHECK(moved.alternatives().fit[RecordSource::disturbance] > 1.0);
+  CHECK(moved.dependence() > 1.0);
 }
 
 TEST_CASE("a CV with hardly a value tells nothing of its noise", "[records]") {
@@ -487,9 +514,9 @@ TEST_CASE("a CV with hardly a value tells nothing of its noise", "[records]") {
     Suspect suspect;
     suspect.record.y.row(0).tail(suspect.record.samples() - values).setConstant(kNaN);
     const AssessedLoop loop = suspect.loop();
-    const ChannelErrorFit fit = ChannelErrorFits(suspect.frame.as_kept, 0.05).of(loop, 0);
-    CHECK(std::isnan(input_dependence(suspect.frame.as_kept, loop, fit, 0)));
-    CHECK(std::isfinite(suspect.alternatives().disturbance));
+    CHECK(std::isnan(
+        input_dependence(suspect.frame.as_kept, loop, Suspect::errors(suspect.frame, loop).front(), 0)));
+    CHECK(std::isfinite(suspect.likelihoods().disturbance));
   }
 }
 
@@ -497,9 +524,9 @@ TEST_CASE("what the likelihood is sure of is believed to 99 %", "[records]") {
   const auto weights_of = [](RecordSource sure, double mismatch) {
     OfSources weights;
     weights[sure] = 1.0;
-    return with_alternatives(
+    return with_comparison(
                weights,
-               {.disturbance = 0.0, .mismatch = mismatch, .data = -9.0, .sensor = -9.0, .valve = -9.0}, kNaN)
+               {.disturbance = 0.0, .mismatch = mismatch, .data = -9.0, .sensor = -9.0, .valve = -9.0})
         .of;
   };
   const OfSources overruled = weights_of(RecordSource::disturbance, 40.0);
@@ -514,17 +541,15 @@ TEST_CASE("what leaves more than chance does is none of the faults, as far as si
           "[records]") {
   OfSources weights;
   weights[RecordSource::disturbance] = 1.0;
-  RecordAlternatives alternatives{
-      .disturbance = 0.0, .mismatch = -8.0, .data = -9.0, .sensor = -9.0, .valve = -9.0};
-  const auto is_unknown = [&](double fit, double most_fit) {
-    alternatives.fit[RecordSource::disturbance] = fit;
-    const OfSources of = with_alternatives(weights, alternatives, most_fit).of;
+  const SourceWeights found = with_comparison(
+      weights, {.disturbance = 0.0, .mismatch = -8.0, .data = -9.0, .sensor = -9.0, .valve = -9.0});
+  const auto is_unknown = [&found](double r) {
+    const OfSources of = with_none_of_these(found, r).of;
     return of[RecordSource::unknown] > of[RecordSource::disturbance];
   };
-  CHECK_FALSE(is_unknown(0.9, 0.7));
-  CHECK_FALSE(is_unknown(1.1, 0.7));  // a little more than chance leaves
-  CHECK(is_unknown(1.5, 0.7));
-  CHECK_FALSE(is_unknown(1.5, 1.2));
+  CHECK_FALSE(is_unknown(0.9));
+  CHECK_FALSE(is_unknown(1.1));  // a little more than chance leaves
+  CHECK(is_unknown(1.5));
 }
 
 /// Slow noise on both CVs that never stops, of this many standard deviations of their noise.
@@ -580,15 +605,15 @@ TEST_CASE("a channel that is wrong throughout is wrong in every benchmark", "[re
 }
 
 TEST_CASE("a drift is a sensor's or a disturbance's, and the verdict says both", "[records]") {
-  RecordAlternatives alternatives{.disturbance = -100.0,
-                                  .mismatch = -110.0,
-                                  .data = -120.0,
-                                  .sensor = -80.0,
-                                  .valve = -120.0,
-                                  .sensor_cv = 1};
+  FaultLikelihoods alternatives{.disturbance = -100.0,
+                                .mismatch = -110.0,
+                                .data = -120.0,
+                                .sensor = -80.0,
+                                .valve = -120.0,
+                                .sensor_cv = 1};
   OfSources weights;
   weights[RecordSource::disturbance] = 1.0;
-  const SourceWeights found = with_alternatives(weights, alternatives, kNaN);
+  const SourceWeights found = with_comparison(weights, alternatives);
   CHECK(found.of[RecordSource::sensor] == Approx(found.of[RecordSource::disturbance]).epsilon(1e-6));
   VerdictEvidence evidence;
   evidence.model_scores = Eigen::Vector2d(9.0, 1.0);
@@ -601,7 +626,7 @@ TEST_CASE("a drift is a sensor's or a disturbance's, and the verdict says both",
   CHECK(verdict.action.kind == ActionKind::sensor);
   CHECK(verdict.action.cv == 1);
   alternatives.sensor = -100.0;  // no ramp explains more than slow noise does
-  const SourceWeights slow = with_alternatives(weights, alternatives, kNaN);
+  const SourceWeights slow = with_comparison(weights, alternatives);
   evidence.weights = slow.of;
   evidence.drift = slow.drift;
   verdict = record_verdict(evidence);

@@ -7,14 +7,15 @@
 #include <Eigen/Core>
 
 #include "analysis/methods/assessed_loop.hpp"
-#include "analysis/records/channel_error_fit.hpp"
-#include "analysis/records/record_verdict.hpp"
+#include "analysis/methods/assessment.hpp"
+#include "analysis/methods/ours/cv_errors.hpp"
+#include "analysis/methods/ours/record_source.hpp"
 #include "scenarios/study/study.hpp"
 
 namespace mpm {
 
-/// How well each sort of fault explains the simulation errors of a record, on one scale: the sum of the L of
-/// all CVs (CvErrors, of y - y_sim without what no record can tell, AssessedLoop::untold), less k/2 log N for
+/// How well each sort of fault explains the simulation errors of a loop beside noise of any shape, on one
+/// scale: the sum of the L of all CVs (CvErrors), less k/2 log N for
 /// the k parameters of the hypothesis h (Schwarz 1978) and less log m for the m channels, CVs, or MVs and
 /// valve models that it may be of. The slow part of n is a disturbance, which may be
 /// there in each of them. From some sample of each CV on, the same for all hypotheses, n may be another
@@ -23,25 +24,50 @@ namespace mpm {
 /// | hypothesis  | h                                                                                        |
 /// |-------------|------------------------------------------------------------------------------------------|
 /// | disturbance | none                                                                                     |
-/// | mismatch    | of one channel of each CV: another gain, time constant or dead time, from the onset on   |
+/// | mismatch    | of one channel of each CV: another gain, time constant or dead time, from some sample on |
 /// | data        | y is s samples late against the inputs, in one CV or in all: y_sim(k) - y_sim(k - s)     |
 /// | sensor      | a ramp or a step in y of one CV from some sample on: of its sensor, or of a disturbance  |
 /// | valve       | of one MV: the responses to x - u, x of a StickyValve, or of a FrictionValve without     |
 /// |             | kinetic friction                                                                         |
-struct RecordAlternatives {
+struct FaultLikelihoods {
   double disturbance = 0.0, mismatch = 0.0, data = 0.0, sensor = 0.0, valve = 0.0;  ///< L
   Eigen::Index data_cv = -1;                                                        ///< -1: all CVs
   double late = 0.0;                                                                ///< s
   Eigen::Index sensor_cv = -1, valve_mv = -1;
   bool sensor_jumps = false;                ///< h of `sensor` is a step
+  bool sensor_stuck = false;                ///< `sensor_cv` shows one value instead
   std::optional<NamedMismatch> named = {};  ///< the most likely mismatch, of an MV, without a size
   Eigen::Index md = -1;                     ///< whose channel the most likely mismatch is of, and no MV's
-  OfSources fit = {};  ///< the largest input_dependence() of a CV where this is taken off; none of a mismatch
 };
 
-/// `delta`: the errors of the model, 0: none. Throws InputError as ChannelErrorFits.
-RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& loop, double delta,
-                                       const std::optional<FaultOnset>& onset);
+/// The hypotheses about one loop.
+class FaultComparison {
+ public:
+  /// `errors` of each CV of the loop. Study and loop must outlive it.
+  FaultComparison(const Study& study, const AssessedLoop& loop, std::vector<CvErrors> errors);
+
+  const FaultLikelihoods& likelihoods() const { return found_; }
+
+  /// The largest input_dependence() of a CV where what is most likely of this source is taken off; 0 of a
+  /// mismatch, whose size is not known here.
+  double dependence_beside(RecordSource source) const;
+
+ private:
+  const CvErrors& of(Eigen::Index cv) const { return errors_[static_cast<std::size_t>(cv)]; }
+  void ask_mismatch();
+  void ask_data();
+  void ask_sensor();
+  void ask_valve();
+  double of_valve(Eigen::Index mv, const Eigen::RowVectorXd& x) const;
+
+  const Study& study_;
+  const AssessedLoop& loop_;
+  std::vector<CvErrors> errors_;
+  FaultLikelihoods found_;
+  double none_ = 0.0;
+  Eigen::RowVectorXd off_;  ///< x - u of the most likely valve
+  Eigen::VectorXd drift_;   ///< of the most likely sensor, of any size
+};
 
 /// Do the inputs help to predict the errors of a CV beside the last twelve errors of every CV (Granger 1969)?
 /// The controller answers to these, so that its moves say nothing more of a disturbance, whatever its shape.
@@ -49,7 +75,7 @@ RecordAlternatives record_alternatives(const Study& study, const AssessedLoop& l
 /// covariance of White (1980), since the size of a disturbance changes, over the value that chance exceeds in
 /// 1 of 100 records. A short record has fewer errors of each CV, and an error that is missing counts as 0. An
 /// absolute test: what no hypothesis explains raises it above 1.
-double input_dependence(const Study& study, const AssessedLoop& loop, const ChannelErrorFit& fit,
+double input_dependence(const Study& study, const AssessedLoop& loop, const CvErrors& errors,
                         Eigen::Index cv);
 
 /// CVs whose rows are of another time than those of the inputs.
@@ -68,6 +94,6 @@ struct LateCvs {
 /// some worse, by 2 in L. Together s explains them better than none does, by 6 in L, where the gain of each
 /// channel is free in both, and not worse than a mismatch in one channel of each CV; of one CV alone better
 /// by 6 than that.
-LateCvs common_lateness(const Study& study, const AssessedLoop& loop, double delta);
+LateCvs common_lateness(const Study& study, const AssessedLoop& loop, const std::vector<CvErrors>& errors);
 
 }  // namespace mpm
