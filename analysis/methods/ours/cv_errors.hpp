@@ -77,11 +77,9 @@ class CvErrors {
   double with(const Columns& free) const {
     return fit(parts_, told_columns(free, nullptr), free.cols()).log_likelihood;
   }
-  /// The most likely size of a signal (N of the loop) in the errors, beside these columns.
-  double size_of(const Eigen::RowVectorXd& h, const Columns& free) const {
-    Columns all(h.size(), free.cols() + 1);
-    all << h.transpose(), free;
-    return -fit(parts_, told_columns(all, nullptr), all.cols()).of_hypothesis(0);
+  /// The most likely size of a signal (N of the loop) in the errors.
+  double size_of(const Eigen::RowVectorXd& h) const {
+    return -fit(parts_, told_columns(h.transpose(), nullptr), 1).of_hypothesis(0);
   }
 
   /// input_dependence() since the noise changed, where h and `free` are in the errors; `moves` of the inputs

@@ -28,7 +28,7 @@ Eigen::RowVectorXd response_of(const Study& study, const TransferFunction& chann
                                const Eigen::RowVectorXd& x);
 
 /// The best one of a CV: a gain of 0.3 to 3.3 times that of the model, or a time constant or dead time on a
-/// grid, throughout or since the noise is another one (CvErrors::change()).
+/// grid, throughout or from the sample on from which another gain explains most.
 LikelyMismatch likely_mismatch(const Study& study, const AssessedLoop& loop, const CvErrors& errors,
                                Eigen::Index cv);
 

@@ -104,9 +104,7 @@ class Mpmbench final : public AssessmentMethod {
     SourceWeights weights{source_weights(posterior, assessment)};
     const bool names = assessment.flagged || posterior.flagged;
     if (learnt_ && (loop.has_unknown_noise() || (without_ == WithoutPart::noise && names))) {
-      const std::shared_ptr<const AssessedLoop> corrected = learnt_->corrected(loop);
-      const AssessedLoop& whole = corrected->from_start();
-      const FaultComparison comparison(study_, whole, cv_errors(loop, whole));
+      const FaultComparison comparison(study_, loop.from_start(), cv_errors(loop));
       FaultLikelihoods found = comparison.likelihoods();
       weights = with_comparison(weights.of, found);
       assessment.numbers.push_back({"dependence", comparison.dependence_beside(heaviest(weights))});
@@ -271,7 +269,7 @@ class Mpmbench final : public AssessmentMethod {
     return likely_mismatch(study_, whole, errors, cv).gain > kSureMismatch;
   }
 
-  /// `whole` is corrected by what is learnt.
+  /// Beside those of the other CVs in `whole`.
   CvErrors cv_errors(const AssessedLoop& loop, const AssessedLoop& whole, Eigen::Index cv) const {
     const Eigen::MatrixXd series = learnt_->series(loop, cv);
     std::vector<Eigen::Index> samples;
@@ -281,10 +279,10 @@ class Mpmbench final : public AssessmentMethod {
     return {whole, cv, samples, series(0, samples).transpose(),
             series(Eigen::seq(1, Eigen::last), samples).transpose()};
   }
-  std::vector<CvErrors> cv_errors(const AssessedLoop& loop, const AssessedLoop& whole) const {
+  std::vector<CvErrors> cv_errors(const AssessedLoop& loop) const {
     std::vector<CvErrors> all;
-    for (Eigen::Index cv = 0; cv < whole.y.rows(); ++cv)
-      all.push_back(cv_errors(loop, whole, cv));
+    for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv)
+      all.push_back(cv_errors(loop, loop.from_start(), cv));
     return all;
   }
 
