@@ -237,7 +237,7 @@ OptionKeys data_keys(Study& study) {
           o.fill,
           "value of a missing CV for methods that need every sample. `\"none\"`: no value, so these methods "
           "do not apply. `\"hold\"`: the last value. `\"linear\"`: a straight line. Methods that can handle "
-          "gaps see the gaps. The loops of the calibration run are filled if the first method needs it"),
+          "gaps see the gaps"),
       key::option("period", "list of 2 texts", "period that is assessed")
           .otherwise("the whole file")
           .allow("stamps as in the file")
