@@ -12,10 +12,6 @@ namespace {
 
 constexpr double kHalfAGain = 0.5;  ///< an error of a gain that a record must show, or it tells nothing
 
-constexpr RecordSource kFaults[] = {RecordSource::mismatch, RecordSource::disturbance, RecordSource::both,
-                                    RecordSource::sensor,   RecordSource::valve,       RecordSource::data,
-                                    RecordSource::unknown};
-
 const CvCost* cost_of(const std::vector<CvCost>& costs, Eigen::Index cv) {
   const auto found =
       std::find_if(costs.begin(), costs.end(), [cv](const CvCost& cost) { return cost.cv == cv; });
@@ -58,12 +54,12 @@ OfSources probabilities_of(const VerdictEvidence& evidence, bool fails) {
       fails ? share(counts.healthy_above, counts.above) : share(counts.healthy_below, counts.below);
   probabilities[RecordSource::nothing] = nothing;
   double sum = 0.0;
-  for (const RecordSource source : kFaults)
+  for (const RecordSource source : kFaultSources)
     sum += evidence.weights[source];
   const double trust = sum > 0.0 ? share(counts.right, counts.same) : 0.0;
-  for (const RecordSource source : kFaults)
+  for (const RecordSource source : kFaultSources)
     probabilities[source] = (1.0 - nothing) * ((sum > 0.0 ? trust * evidence.weights[source] / sum : 0.0) +
-                                               (1.0 - trust) / static_cast<double>(std::size(kFaults)));
+                                               (1.0 - trust) / static_cast<double>(std::size(kFaultSources)));
   return probabilities;
 }
 
@@ -72,7 +68,7 @@ OfSources probabilities_of(const VerdictEvidence& evidence, bool fails) {
 RecordSource likeliest(const VerdictEvidence& evidence, bool& drifts) {
   const auto best_of = [](const OfSources& weights) {
     RecordSource best = RecordSource::unknown;
-    for (const RecordSource source : kFaults)
+    for (const RecordSource source : kFaultSources)
       if (weights[source] > weights[best])
         best = source;
     return best;

@@ -25,6 +25,11 @@ inline constexpr auto kWords<RecordSource> = word_list("nothing", "mismatch", "d
 
 inline constexpr std::size_t kRecordSources = kWords<RecordSource>.size();
 
+/// All but nothing.
+inline constexpr std::array kFaultSources{
+    RecordSource::mismatch, RecordSource::disturbance, RecordSource::both,   RecordSource::sensor,
+    RecordSource::valve,    RecordSource::data,        RecordSource::unknown};
+
 /// A number for each source.
 struct OfSources {
   std::array<double, kRecordSources> each{};

@@ -13,10 +13,6 @@
 namespace mpm {
 namespace {
 
-constexpr RecordSource kFaults[] = {RecordSource::mismatch, RecordSource::disturbance, RecordSource::both,
-                                    RecordSource::sensor,   RecordSource::valve,       RecordSource::data,
-                                    RecordSource::unknown};
-
 std::string number_of(RecordSource source) {
   return fmt::format("q_{}", to_string(source));
 }
@@ -188,9 +184,9 @@ SourceWeights with_none_of_these(SourceWeights weights, double r) {
 
 std::vector<AssessmentNumberInfo> source_weight_numbers() {
   std::vector<AssessmentNumberInfo> numbers;
-  for (const RecordSource source : kFaults)
-    numbers.push_back({number_of(source), NumberScope::loop,
-                       "weight of this source against the others, given that something is wrong"});
+  for (const RecordSource source : kFaultSources)
+    numbers.emplace_back(number_of(source), NumberScope::loop,
+                         "weight of this source against the others, given that something is wrong");
   const std::vector<AssessmentNumberInfo> further{
       {"q_drift", NumberScope::loop,
        "part of `q_sensor` and of `q_disturbance` each that a CV has which drifts"},
@@ -211,7 +207,7 @@ std::vector<AssessmentNumberInfo> source_weight_numbers() {
 }
 
 void add_weights(const SourceWeights& weights, Assessment& assessment) {
-  for (const RecordSource source : kFaults)
+  for (const RecordSource source : kFaultSources)
     assessment.numbers.push_back({number_of(source), weights.of[source]});
   assessment.numbers.push_back({"q_drift", weights.drift});
 }
@@ -238,7 +234,7 @@ SourceWeights stated_weights(const AssessmentRecord& said) {
   SourceWeights weights;
   if (!said.answered() || std::isnan(said.number("q_drift")))
     return weights;
-  for (const RecordSource source : kFaults)
+  for (const RecordSource source : kFaultSources)
     weights.of[source] = said.number(number_of(source));
   weights.drift = said.number("q_drift");
   return weights;
