@@ -111,8 +111,8 @@ struct PartUnderHypothesis {
     a = past.ldlt().solve(R.col(0).tail(kErrorOrder));
   }
 
-  /// Of Z = [. e] (p and e) and T (q of any size, and h): those of the p and q, whose right side is that of e
-  /// - h.
+  /// Those of the p columns of Z before e and of the q first ones of T; any further one of T is h, and the
+  /// right side (p + q) that of e - h.
   Columns normal_equations(Eigen::Index p, Eigen::Index q, Eigen::VectorXd& right) const {
     const Columns of_known = known.whitened_by(a), of_both = across.whitened_by(a),
                   of_own = own.whitened_by(a);

@@ -33,7 +33,7 @@ class LaggedProducts {
   /// (A_0 - sum_l a_l A_l)' (B_0 - sum_m a_m B_m), p x q, A_l being l samples late
   Columns whitened_by(const Eigen::VectorXd& a) const;
 
-  /// The same products of the signals A x and B y, over l < m twice: kLagPairs.
+  /// The same products of the signals A x and B y, one value for each l <= m; those of l < m count twice.
   Eigen::VectorXd of(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
 
  private:
@@ -95,7 +95,8 @@ class CvErrors {
     Eigen::VectorXd a;  ///< of the noise without a hypothesis, from which that of each starts
   };
 
-  /// Of [X E_i e] and a hypothesis, in the last part, what is left.
+  /// The likelihood, and the coefficients of [X E_i e] and of the hypothesis whose sum is left in the last
+  /// part.
   struct Fit {
     double log_likelihood = 0.0;  ///< 0 of a CV that has too few samples to tell anything
     Eigen::VectorXd of_known, of_hypothesis;

@@ -15,11 +15,9 @@
 namespace mpm {
 
 /// How well each sort of fault explains the simulation errors of a loop beside noise of any shape, on one
-/// scale: the sum of the L of all CVs (CvErrors), less k/2 log N for
-/// the k parameters of the hypothesis h (Schwarz 1978) and less log m for the m channels, CVs, or MVs and
-/// valve models that it may be of. The slow part of n is a disturbance, which may be
-/// there in each of them. From some sample of each CV on, the same for all hypotheses, n may be another
-/// autoregression, where that brings more than its k/2 log N.
+/// scale: the sum of the L of all CVs (CvErrors), less k/2 log N for the k parameters of the hypothesis h
+/// (Schwarz 1978) and less log m for the m channels, CVs, or MVs and valve models that it may be of. The slow
+/// part of n is a disturbance, which may be there in each of them.
 ///
 /// | hypothesis  | h                                                                                        |
 /// |-------------|------------------------------------------------------------------------------------------|

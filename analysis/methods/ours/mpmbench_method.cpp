@@ -117,6 +117,11 @@ class Mpmbench final : public AssessmentMethod {
       add_likeliest(found, assessment);
       if (const std::optional<Eigen::Index> worst = assessment.worst_cv())
         name_heaviest(weights, assessment.cvs[static_cast<std::size_t>(*worst)]);
+      if (const RecordSource source = heaviest(weights);
+          source != RecordSource::mismatch && source != RecordSource::both) {
+        assessment.flagged_channels.clear();
+        assessment.named_mismatch.reset();
+      }
     }
     add_weights(weights, assessment);
   }

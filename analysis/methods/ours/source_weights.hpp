@@ -48,13 +48,15 @@ SourceWeights with_none_of_these(SourceWeights weights, double r);
 
 /// The numbers by which a method says weights, and what is most likely of each source:
 ///
-/// | number                                            | meaning |
-/// |---------------------------------------------------|-------------------------------------------------------|
-/// | q_mismatch ... q_data, q_none_of_these            | SourceWeights::of | | q_drift | SourceWeights::drift
-/// | | likely_cv, likely_mv, likely_parameter, likely_md | FaultLikelihoods::named, md | | sensor_cv,
-/// sensor_jumps, sensor_stuck             | those of FaultLikelihoods                             | |
-/// stem_mv, late, late_cv                            | valve_mv, late, data_cv | | dependence |
-/// FaultComparison::dependence_beside() the heaviest one |
+/// | number                                      | meaning                                               |
+/// |---------------------------------------------|-------------------------------------------------------|
+/// | q_mismatch ... q_none_of_these              | SourceWeights::of                                     |
+/// | q_drift                                     | SourceWeights::drift                                  |
+/// | likely_cv, likely_mv, likely_parameter      | FaultLikelihoods::named                               |
+/// | likely_md                                   | FaultLikelihoods::md                                  |
+/// | sensor_cv, sensor_jumps, sensor_stuck, late | those of FaultLikelihoods                             |
+/// | stem_mv, late_cv                            | valve_mv, data_cv                                     |
+/// | dependence                                  | dependence_beside() the heaviest one                  |
 std::vector<AssessmentNumberInfo> source_weight_numbers();
 void add_weights(const SourceWeights& weights, Assessment& assessment);
 void add_likeliest(const FaultLikelihoods& found, Assessment& assessment);
