@@ -266,7 +266,7 @@ void add_sources(const RecordFrame& frame, RecordAssessment& assessment, Verdict
   take_sources(assessment.loop, assessment.sources, assessment.trial ? assessment.trial->fit : kNaN,
                evidence);
   if (corrected.any()) {  // nothing is left of it
-    evidence.weights[RecordSource::data] = 0.0;
+    evidence.weights.of[RecordSource::data] = 0.0;
     evidence.late = corrected.samples;
     evidence.late_cvs = corrected.cvs;
   }
@@ -333,7 +333,7 @@ RecordAssessment assess_record(const Study& study, PlantRecord record, const Ass
     assessment.verdict = record_verdict(evidence);
     add_repair(assessment, *frame, evidence);
     if (assessment.verdict.model.source == RecordSource::both && is_mismatch_alone(assessment, *frame))
-      std::swap(evidence.weights[RecordSource::both], evidence.weights[RecordSource::mismatch]);
+      std::swap(evidence.weights.of[RecordSource::both], evidence.weights.of[RecordSource::mismatch]);
     if (assessment.trial) {
       const RecordVerdict::Model model = record_verdict(evidence).model;
       // No simulated record drifts: how often that is right is not known.

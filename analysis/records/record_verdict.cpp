@@ -55,33 +55,12 @@ OfSources probabilities_of(const VerdictEvidence& evidence, bool fails) {
   probabilities[RecordSource::nothing] = nothing;
   double sum = 0.0;
   for (const RecordSource source : kFaultSources)
-    sum += evidence.weights[source];
+    sum += evidence.weights.of[source];
   const double trust = sum > 0.0 ? share(counts.right, counts.same) : 0.0;
   for (const RecordSource source : kFaultSources)
-    probabilities[source] = (1.0 - nothing) * ((sum > 0.0 ? trust * evidence.weights[source] / sum : 0.0) +
+    probabilities[source] = (1.0 - nothing) * ((sum > 0.0 ? trust * evidence.weights.of[source] / sum : 0.0) +
                                                (1.0 - trust) / static_cast<double>(std::size(kFaultSources)));
   return probabilities;
-}
-
-/// The most probable one by the evidence, which the probabilities keep. `drifts`: is it a drift by either of
-/// its causes?
-RecordSource likeliest(const VerdictEvidence& evidence, bool& drifts) {
-  const auto best_of = [](const OfSources& weights) {
-    RecordSource best = RecordSource::unknown;
-    for (const RecordSource source : kFaultSources)
-      if (weights[source] > weights[best])
-        best = source;
-    return best;
-  };
-  OfSources by_cause = evidence.weights;
-  by_cause[RecordSource::sensor] += evidence.drift;
-  by_cause[RecordSource::disturbance] -= evidence.drift;
-  drifts = evidence.drift > 0.0 && best_of(by_cause) == RecordSource::sensor;
-  if (drifts)
-    return evidence.weights[RecordSource::sensor] > evidence.weights[RecordSource::disturbance]
-               ? RecordSource::sensor
-               : RecordSource::disturbance;
-  return best_of(evidence.weights);
 }
 
 RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::vector<CvCost>& costs) {
@@ -106,7 +85,9 @@ RecordVerdict::Model model_answer(const VerdictEvidence& evidence, const std::ve
   if (!fails)
     return model;
   model.since = evidence.onset;
-  model.source = likeliest(evidence, model.drifts);
+  const NamedSource named = named_source(evidence.weights);
+  model.source = named.source;
+  model.drifts = named.drifts;
   if (model.has_mismatch()) {
     model.mismatch = evidence.mismatch;
     model.md = evidence.md;

@@ -11,6 +11,7 @@
 
 #include "analysis/methods/assessment.hpp"
 #include "analysis/methods/ours/record_source.hpp"
+#include "analysis/methods/ours/source_weights.hpp"
 #include "analysis/statistics/standstill.hpp"
 #include "base/enum_words.hpp"
 #include "base/non_finite.hpp"
@@ -118,9 +119,8 @@ struct VerdictEvidence {
   std::optional<TrialCounts> trials = {};   ///< none: there are no simulated records
   std::optional<FaultOnset> onset = {};
   std::vector<CvCost> costs = {};  ///< since the onset where there is one
-  /// Posterior of the sources, given that there is one; need not sum to 1.
-  OfSources weights = {};
-  double drift = 0.0;  ///< SourceWeights::drift, of `sensor_cv`
+  /// Posterior of the sources, given that there is one; need not sum to 1. It is `sensor_cv` that drifts.
+  SourceWeights weights = {};
   bool jumps = false;  ///< it is a step
   /// Where `sensor_cv` shows one value that chance does not make: then its sensor has all of the weights.
   std::optional<Standstill> stuck = {};

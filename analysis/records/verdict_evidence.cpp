@@ -116,8 +116,7 @@ void take_sources(const AssessedLoop& loop, const AssessmentRecord& mpmbench, do
   } else if (const double valve = mpmbench.number("valve_mv"); !std::isnan(valve)) {
     evidence.valve_mv = static_cast<Eigen::Index>(valve);
   }
-  evidence.weights = weights.of;
-  evidence.drift = weights.drift;
+  evidence.weights = weights;
 }
 
 }  // namespace mpm

@@ -34,6 +34,7 @@ constexpr double kSureMismatch = 6.0;  ///< gain of log L beside noise of any sh
 constexpr double kSurelyBoth = 1e-10;  ///< probability of a mismatch alone over that of both
 /// Distance of Ivar from 1 that noise and errors of the model do not explain.
 constexpr double kMuchMore = 0.5;
+constexpr const char* kValve = "valve_mv";  ///< the number, in `likelihood` too
 
 /// What a variant of the method does without (docs/suite.md has what each part brings).
 enum class WithoutPart : std::int8_t { none, order, likelihood, other, quiet, noise };
@@ -115,24 +116,20 @@ class Mpmbench final : public AssessmentMethod {
         found.sensor_stuck = true;
       }
       add_likeliest(found, assessment);
-      if (const std::optional<Eigen::Index> worst = assessment.worst_cv())
-        name_heaviest(weights, assessment.cvs[static_cast<std::size_t>(*worst)]);
-      if (const RecordSource source = heaviest(weights);
-          source != RecordSource::mismatch && source != RecordSource::both) {
+      const RecordSource source = named_source(weights).source;
+      if (const std::optional<Eigen::Index> worst = assessment.worst_cv()) {
+        CvAssessment& cv = assessment.cvs[static_cast<std::size_t>(*worst)];
+        std::tie(cv.source, cv.about) = told_source(source);
+      }
+      if (source != RecordSource::mismatch && source != RecordSource::both) {
         assessment.flagged_channels.clear();
         assessment.named_mismatch.reset();
       }
+      std::erase_if(assessment.numbers, [](const auto& number) { return number.name == kValve; });
+      if (source == RecordSource::valve)
+        assessment.numbers.push_back({kValve, static_cast<double>(found.valve_mv)});
     }
     add_weights(weights, assessment);
-  }
-
-  /// Of a drift, the heavier one of its causes.
-  static void name_heaviest(const SourceWeights& weights, CvAssessment& cv) {
-    RecordSource source = heaviest(weights);
-    if (source == RecordSource::sensor &&
-        weights.of[RecordSource::disturbance] >= weights.of[RecordSource::sensor])
-      source = RecordSource::disturbance;
-    std::tie(cv.source, cv.about) = told_source(source);
   }
 
   /// Of the CVs in which something is wrong, the one that shows a value for longest, and longer than chance
@@ -220,9 +217,9 @@ class Mpmbench final : public AssessmentMethod {
     const FaultSource source = agreed_source(loop, posterior, order, *worst);
     assessment.cvs[static_cast<std::size_t>(*worst)].source = source;
     if (source == FaultSource::other) {
-      const double valve = posterior.number("valve_mv");
+      const double valve = posterior.number(kValve);
       if (assessment.cvs[static_cast<std::size_t>(*worst)].about == ToldSource::valve && !std::isnan(valve))
-        assessment.numbers.push_back({"valve_mv", valve});
+        assessment.numbers.push_back({kValve, valve});
     }
     if (posterior.status != AssessmentStatus::ok ||
         (source != FaultSource::mpm && source != FaultSource::mpm_ud))
@@ -312,7 +309,7 @@ AssessmentMethodInfo mpmbench_method() {
   std::vector<AssessmentNumberInfo> numbers{
       {"ivar", NumberScope::cv, "var y / (var y0 + v), y0 of the simulated nominal loop, v of noise", "1",
        NumberFinding::regression},
-      {"valve_mv", NumberScope::loop,
+      {kValve, NumberScope::loop,
        "place of the MV whose valve sticks, from 0; none: the source is not a valve"}};
   for (const std::vector<AssessmentNumberInfo>& further :
        {source_probability_numbers(), source_weight_numbers()})

@@ -57,8 +57,11 @@ OfSources posterior_of(const Assessment& likelihood) {
 }
 
 RecordSource largest(const OfSources& weights) {
-  return static_cast<RecordSource>(std::max_element(weights.each.begin(), weights.each.end()) -
-                                   weights.each.begin());
+  RecordSource best = RecordSource::unknown;
+  for (const RecordSource source : kFaultSources)
+    if (weights[source] > weights[best])
+      best = source;
+  return best;
 }
 
 /// A drift, by either of its causes, has the weight of the sensor.
@@ -169,6 +172,14 @@ SourceWeights with_comparison(const OfSources& weights, const FaultLikelihoods& 
 
 RecordSource heaviest(const SourceWeights& weights) {
   return largest(by_cause(weights));
+}
+
+NamedSource named_source(const SourceWeights& weights) {
+  const RecordSource best = heaviest(weights);
+  const bool drifts = best == RecordSource::sensor && weights.drift > 0.0;
+  const bool is_disturbance =
+      drifts && weights.of[RecordSource::disturbance] >= weights.of[RecordSource::sensor];
+  return {is_disturbance ? RecordSource::disturbance : best, drifts};
 }
 
 SourceWeights with_none_of_these(SourceWeights weights, double r) {

@@ -38,8 +38,16 @@ struct SourceWeights {
 /// drift by either of its causes.
 SourceWeights with_comparison(const OfSources& weights, const FaultLikelihoods& found);
 
-/// The source with the largest weight, a drift by both of its causes together.
+/// The source with the largest weight, a drift by both of its causes together as that of the sensor; unknown
+/// where none has a weight.
 RecordSource heaviest(const SourceWeights& weights);
+
+/// The source that weights name: the heaviest one, and of a drift the heavier one of its causes.
+struct NamedSource {
+  RecordSource source = RecordSource::unknown;
+  bool drifts = false;  ///< by either of its causes
+};
+NamedSource named_source(const SourceWeights& weights);
 
 /// What the inputs tell of the errors beside the heaviest source (FaultComparison::dependence_beside()) is r
 /// times what they tell in loops without a mismatch: with r > 1, 1 - 1 / r^2 of its weight goes to none of

@@ -618,17 +618,14 @@ TEST_CASE("a drift is a sensor's or a disturbance's, and the verdict says both",
   VerdictEvidence evidence;
   evidence.model_scores = Eigen::Vector2d(9.0, 1.0);
   evidence.model_threshold = 1.2;
-  evidence.weights = found.of;
-  evidence.drift = found.drift;
+  evidence.weights = found;
   evidence.sensor_cv = 1;
   RecordVerdict verdict = record_verdict(evidence);
   CHECK(verdict.model.drifts);
   CHECK(verdict.action.kind == ActionKind::sensor);
   CHECK(verdict.action.cv == 1);
   alternatives.sensor = -100.0;  // no ramp explains more than slow noise does
-  const SourceWeights slow = with_comparison(weights, alternatives);
-  evidence.weights = slow.of;
-  evidence.drift = slow.drift;
+  evidence.weights = with_comparison(weights, alternatives);
   verdict = record_verdict(evidence);
   CHECK_FALSE(verdict.model.drifts);
   CHECK(verdict.model.source == RecordSource::disturbance);

@@ -62,18 +62,17 @@ class EvidenceDraw {
     if (chance(0.4))
       of.onset = FaultOnset{3, 2, 5};
     for (std::size_t place = 1; place < kRecordSources; ++place)
-      of.weights.each[place] = chance(0.5) ? 0.0 : chance(0.3) ? 1.0 : between(0.0, 1.0);
+      of.weights.of.each[place] = chance(0.5) ? 0.0 : chance(0.3) ? 1.0 : between(0.0, 1.0);
     if (chance(0.3)) {  // by either cause
-      of.drift = between(0.0, 1.0);
+      of.weights.drift = between(0.0, 1.0);
       of.jumps = chance(0.5);
-      of.weights[RecordSource::sensor] = of.drift;
-      of.weights[RecordSource::disturbance] += of.drift;
+      of.weights.of[RecordSource::sensor] = of.weights.drift;
+      of.weights.of[RecordSource::disturbance] += of.weights.drift;
     }
     if (chance(0.1)) {
       of.stuck = Standstill{1, 4, 0.0};
-      of.drift = 0.0;
       of.weights = {};
-      of.weights[RecordSource::sensor] = 1.0;
+      of.weights.of[RecordSource::sensor] = 1.0;
       of.sensor_cv = index(cvs_);
     }
     of.benchmark = {.use = static_cast<BenchmarkUse>(index(3)), .cv = index(cvs_), .is_wanted = chance(0.8)};
@@ -379,7 +378,7 @@ TEST_CASE("record verdict: with few simulated records nothing is certain", "[ver
   VerdictEvidence evidence;
   evidence.model_scores = Eigen::Vector2d(9.0, 1.0);
   evidence.model_threshold = 1.2;
-  evidence.weights[RecordSource::valve] = 1.0;
+  evidence.weights.of[RecordSource::valve] = 1.0;
   evidence.trials = TrialCounts{};
   const RecordVerdict none = record_verdict(evidence);
   CHECK((*none.model.probabilities)[RecordSource::valve] < 0.5);
