@@ -152,6 +152,7 @@ std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study&
       of->assessment.model_error = options.model_error;
     }
   frame->factory = factory;
+  frame->for_each = options.for_each ? options.for_each : in_turn(factory);
   frame->model_error = options.model_error;
   frame->finds_benchmark = study.data.benchmark == std::vector<std::string>{"found"};
   assessment.study = frame->as_kept;

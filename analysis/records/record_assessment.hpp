@@ -8,6 +8,7 @@
 #include "analysis/records/record_trials.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
+#include "solvers/for_each_with_solver.hpp"
 #include "solvers/qp_solver.hpp"
 
 // A record of a plant under the study of its controller: what the methods say of it, and how far to trust
@@ -23,6 +24,7 @@ struct AssessOptions {
   double model_error = 0.05;
   int trials = 200;  ///< simulated records like this one; 0: none
   std::optional<MonitoringOptions> monitoring = {};
+  ForEachWithSolver for_each = {};  ///< runs the loops that say what repairs bring; empty: in turn
 };
 
 /// The record, read under `study`, as its methods see it: the nominal loop under what moved the plant, the

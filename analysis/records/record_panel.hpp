@@ -15,6 +15,7 @@
 #include "analysis/records/channel_error_fit.hpp"
 #include "scenarios/loop/plant_record.hpp"
 #include "scenarios/study/study.hpp"
+#include "solvers/for_each_with_solver.hpp"
 
 // How a record of a plant is judged, and the simulated records beside it in the same way.
 
@@ -31,6 +32,7 @@ struct RecordFrame {
   std::vector<std::string> methods;
   BasisCase basis;
   QpSolverFactory factory;
+  ForEachWithSolver for_each;    ///< with this factory or one of the same answers
   GapFill fill = GapFill::none;  ///< of those methods
   Eigen::Index unjudged = 0;     ///< samples at the start that only fill the memory of the model
   Eigen::Index settling = 0;     ///< samples after a gap of the inputs that do the same

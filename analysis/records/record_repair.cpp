@@ -98,7 +98,7 @@ void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictE
       evidence.tells_apart = assessment.information->rank == assessment.information->parameters;
       named = repair->repaired();
     }
-    if (auto prospects = RepairProspects(study, point, frame.factory).of(loop, named, counted))
+    if (auto prospects = RepairProspects(study, point, frame.for_each).of(loop, named, counted))
       assessment.prospects = ranked(std::move(*prospects));
   } catch (const InputError& error) {
     assessment.no_repair = error.what();

@@ -17,28 +17,30 @@
 
 namespace mpm {
 
-/// The threshold of a number of model_check_method(), in the place `method` of the answers, for each of its
-/// rows, above which at most kTrialFalseAlarms of the simulated records without a fault are in some row: its
-/// conformal threshold at this share over the rows, or the largest. NaN without such records.
+/// Thresholds of a number of model_check_method(), one for each of its rows. At most kTrialFalseAlarms of the
+/// simulated records without a fault are above the threshold of any row. Each is the conformal threshold at
+/// this share divided by the number of rows, or the largest value. NaN without such records. `method` is the
+/// place of model_check_method() among the answers.
 Eigen::VectorXd number_thresholds(const RecordRange& records, std::size_t method, const std::string& number,
                                   Eigen::Index rows);
 
-/// Simulated records by the side of their threshold (TrialFindings::threshold_for()) on which their answer in
-/// the place `method`, of which `found` is, lies, and how often the first of their answers has the right
-/// source where it says what is `named`; `unknown`: no source is.
+/// Counts the simulated records above and below their threshold (TrialFindings::threshold_for()) by the
+/// answer in the place `method`, to which `found` belongs. Of those above it whose first answer names the
+/// source `named`, it counts how many have this source; `unknown`: none are counted.
 TrialCounts trial_counts(const RecordRange& records, std::size_t method, const TrialFindings& found,
                          RecordSource named = RecordSource::unknown);
 
-/// The experiments of those above it.
+/// The indices of the experiments above their threshold.
 std::vector<std::int64_t> unexplained_records(const RecordRange& records, std::size_t method,
                                               const TrialFindings& found);
 
-/// Takes the sources from the answer of `mpmbench`, and what is most likely of each; with `most_fit`, the
-/// threshold of kFitNumber, none of these (with_none_of_these()).
+/// Copies from the answer of `mpmbench` the weight of each source, and the likeliest fault of each kind.
+/// `most_fit` is the threshold of kFitNumber: what the inputs still explain beyond it gives weight to "none
+/// of these" (with_none_of_these()).
 void take_sources(const AssessedLoop& loop, const AssessmentRecord& mpmbench, double most_fit,
                   VerdictEvidence& evidence);
 
-/// The threshold of kFitNumber: as number_thresholds(), of simulated records without a mismatch.
+/// The threshold of kFitNumber, as number_thresholds() has it, over simulated records without a mismatch.
 double fit_threshold(const RecordRange& records, std::size_t method);
 
 }  // namespace mpm

@@ -30,6 +30,7 @@
 #include "bench/console/progress.hpp"
 #include "bench/execution/experiment_work.hpp"
 #include "bench/execution/run_options.hpp"
+#include "bench/execution/thread_solvers.hpp"
 #include "bench/files/archive_input.hpp"
 #include "bench/files/output_file.hpp"
 #include "bench/version.hpp"
@@ -201,7 +202,8 @@ ExitCode assess(AssessArguments options, const std::string& command) {
                       {.methods = options.methods,
                        .model_error = 0.01 * options.model_error,
                        .trials = options.trials,
-                       .monitoring = monitoring},
+                       .monitoring = monitoring,
+                       .for_each = in_threads(study, options.run)},
                       qp_solver_factory(options.run.solver), kept_trials(options, progress, command));
   } catch (const Interrupted& error) {
     throw std::runtime_error(progress.explain(error) + "; the same command resumes the calibration run");

@@ -110,7 +110,7 @@ RepairsOfExperiment repairs_of_experiment(const Campaign& campaign, const Experi
   const std::optional<ChannelRepair> repair = chosen_repair(campaign, record, loop, choice);
   RepairsOfExperiment repairs{
       .chosen = {},
-      .prospects = ranked(RepairProspects(campaign.study, campaign.basis.point, factory)
+      .prospects = ranked(RepairProspects(campaign.study, campaign.basis.point, in_turn(factory))
                               .of(loop, repair ? std::optional(repair->repaired()) : std::nullopt)
                               .value_or(std::vector<RepairProspect>{}))};
   if (repair) {

@@ -39,7 +39,7 @@ class Adequacy final : public AssessmentMethod {
   explicit Adequacy(const AssessmentContext& context)
       : study_(context.study),
         options_(study_.assessment.of<AdequacyOptions>()),
-        prospects_(study_, context.basis.point, context.factory) {}
+        prospects_(study_, context.basis.point, in_turn(context.factory)) {}
 
   Assessment assess(const AssessedLoop& loop) override {
     const auto prospects = prospects_.of(loop);

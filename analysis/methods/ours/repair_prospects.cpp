@@ -15,7 +15,6 @@
 #include "base/non_finite.hpp"
 #include "scenarios/loop/closed_loop.hpp"
 #include "scenarios/loop/signals.hpp"
-#include "scenarios/random/random_stream.hpp"
 
 namespace mpm {
 namespace {
@@ -45,6 +44,12 @@ struct RepairProspects::Outcome {
   Eigen::VectorXd variances;
 };
 
+/// A plant that may have made the record, and what it leaves of it.
+struct RepairProspects::DrawnPlant {
+  TransferMatrix plant;
+  Eigen::MatrixXd left;
+};
+
 double RepairProspect::gain() const {
   if (gains.empty())
     return kNaN;
@@ -67,12 +72,11 @@ bool RepairProspect::is_proposed() const {
   return gain() > 0.0 && variance_ratio.maxCoeff() <= kNoticeableChange;
 }
 
-RepairProspects::RepairProspects(const Study& study, const OperatingPoint& point,
-                                 const QpSolverFactory& factory)
+RepairProspects::RepairProspects(const Study& study, const OperatingPoint& point, ForEachWithSolver for_each)
     : study_(study),
       options_(study.assessment.of<AdequacyOptions>()),
       initial_(Eigen::VectorXd::Zero(study.plant.G.cols())),
-      factory_(factory) {
+      for_each_(std::move(for_each)) {
   initial_.head(point.u.size()) = point.u;
 }
 
@@ -131,52 +135,70 @@ Eigen::RowVectorXd RepairProspects::response(const Seen& seen, const TransferFun
                           initial_(input));
 }
 
-void RepairProspects::run(const Seen& seen, std::vector<RepairProspect>& prospects) const {
-  std::vector<Eigen::VectorXd> before(prospects.size(), Eigen::VectorXd::Zero(study_.cv_count()));
-  std::vector<Eigen::VectorXd> after = before;
-  RandomStream random(kDrawSeed, 0, StreamId::world);
-  for (int draw = 0; draw < options_.draws; ++draw) {
-    TransferMatrix plant = study_.plant.G;
-    Eigen::MatrixXd left = seen.whole.y;
-    for (Eigen::Index cv = 0; cv < plant.rows(); ++cv) {
-      const ModelErrors& model = seen.of(cv);
-      Eigen::VectorXd z(model.count());
-      for (double& each : z)
-        each = random.normal();
-      const TransferMatrix drawn = model.drawn(z);
-      for (Eigen::Index input = 0; input < plant.cols(); ++input) {
-        plant(cv, input) = drawn(0, input).without_washout();
-        if (!drawn(0, input).is_zero())
-          left.row(cv) -= response(seen, drawn(0, input), input);
-      }
+RepairProspects::DrawnPlant RepairProspects::drawn(const Seen& seen, RandomStream& random) const {
+  TransferMatrix plant = study_.plant.G;
+  Eigen::MatrixXd left = seen.whole.y;
+  for (Eigen::Index cv = 0; cv < plant.rows(); ++cv) {
+    const ModelErrors& model = seen.of(cv);
+    Eigen::VectorXd z(model.count());
+    for (double& each : z)
+      each = random.normal();
+    const TransferMatrix drawn = model.drawn(z);
+    for (Eigen::Index input = 0; input < plant.cols(); ++input) {
+      plant(cv, input) = drawn(0, input).without_washout();
+      if (!drawn(0, input).is_zero())
+        left.row(cv) -= response(seen, drawn(0, input), input);
     }
-    left = from_washout(study_, left);
-    const std::optional<Outcome> now = outcome(study_.plant.G, plant, seen, left);
-    if (now && !may_have_made(seen, *now))
-      continue;
-    for (std::size_t i = 0; i < prospects.size() && now; ++i) {
-      const RepairedChannel& repair = prospects[i].repair;
-      TransferMatrix repaired = study_.plant.G;
-      repaired(repair.channel.cv, repair.channel.mv) = repair.model;
-      const std::optional<Outcome> then = outcome(repaired, plant, seen, left);
-      const double gain = then ? (now->cost - then->cost) / now->cost : kNaN;
+  }
+  return {std::move(plant), from_washout(study_, left)};
+}
+
+std::vector<std::optional<RepairProspects::Outcome>> RepairProspects::outcomes(
+    const Seen& seen, const DrawnPlant& drawn, const std::vector<RepairProspect>& prospects,
+    const QpSolverFactory& factory) const {
+  std::vector<std::optional<Outcome>> all{outcome(study_.plant.G, drawn.plant, seen, drawn.left, factory)};
+  if (!all.front() || !may_have_made(seen, *all.front()))
+    return {};
+  for (const RepairProspect& prospect : prospects) {
+    TransferMatrix repaired = study_.plant.G;
+    repaired(prospect.repair.channel.cv, prospect.repair.channel.mv) = prospect.repair.model;
+    all.push_back(outcome(repaired, drawn.plant, seen, drawn.left, factory));
+  }
+  return all;
+}
+
+void RepairProspects::run(const Seen& seen, std::vector<RepairProspect>& prospects) const {
+  RandomStream random(kDrawSeed, 0, StreamId::world);
+  std::vector<DrawnPlant> plants;
+  for (int draw = 0; draw < options_.draws; ++draw)
+    plants.push_back(drawn(seen, random));
+  std::vector<std::vector<std::optional<Outcome>>> of_plants(plants.size());
+  for_each_(plants.size(), [&](std::size_t draw, const QpSolverFactory& factory) {
+    of_plants[draw] = outcomes(seen, plants[draw], prospects, factory);
+  });
+  for (std::size_t i = 0; i < prospects.size(); ++i) {
+    Eigen::VectorXd before = Eigen::VectorXd::Zero(study_.cv_count()), after = before;
+    for (const std::vector<std::optional<Outcome>>& loops : of_plants) {
+      if (loops.empty() || !loops[i + 1])
+        continue;
+      const Outcome &now = *loops.front(), &then = *loops[i + 1];
+      const double gain = (now.cost - then.cost) / now.cost;
       if (!std::isfinite(gain))
         continue;
       prospects[i].gains.push_back(gain);
-      before[i] += now->variances;
-      after[i] += then->variances;
+      before += now.variances;
+      after += then.variances;
     }
-  }
-  for (std::size_t i = 0; i < prospects.size(); ++i) {
     std::sort(prospects[i].gains.begin(), prospects[i].gains.end());
-    prospects[i].variance_ratio = after[i].array() / before[i].array();
+    prospects[i].variance_ratio = after.array() / before.array();
   }
 }
 
 std::optional<RepairProspects::Outcome> RepairProspects::outcome(const TransferMatrix& model,
                                                                  const TransferMatrix& plant,
                                                                  const Seen& seen,
-                                                                 const Eigen::MatrixXd& disturbance) const {
+                                                                 const Eigen::MatrixXd& disturbance,
+                                                                 const QpSolverFactory& factory) const {
   Study study = study_;
   study.plant.G = model;
   const Trajectory loop =
@@ -186,7 +208,7 @@ std::optional<RepairProspects::Outcome> RepairProspects::outcome(const TransferM
                        .y_d = disturbance,
                        .y_set = setpoints(study_),
                        .dither = dither(study_)},
-                      factory_);
+                      factory);
   if (loop.status != ControlStatus::ok)
     return std::nullopt;
   return Outcome{loop_cost(study_, loop, seen.counted).total(),

@@ -10,8 +10,9 @@
 #include "analysis/methods/ours/model_errors.hpp"
 #include "analysis/sensitivity/nominal_sensitivity.hpp"
 #include "plants/linear/transfer_function.hpp"
+#include "scenarios/random/random_stream.hpp"
 #include "scenarios/study/study.hpp"
-#include "solvers/qp_solver.hpp"
+#include "solvers/for_each_with_solver.hpp"
 
 // The expected gain of the repair of each channel, from the record alone.
 
@@ -65,8 +66,8 @@ struct RepairProspect {
 /// do not count.
 class RepairProspects {
  public:
-  /// All must outlive it. Options are those of the study.
-  RepairProspects(const Study& study, const OperatingPoint& point, const QpSolverFactory& factory);
+  /// `study` must outlive it, and has the options. `for_each` runs the loops, those of each plant together.
+  RepairProspects(const Study& study, const OperatingPoint& point, ForEachWithSolver for_each);
 
   /// Of the channels whose errors explain most of their CV, in this order, and of the given one; none where a
   /// CV has too few samples. Costs 1 + channels closed loops a draw. `counted`: the samples at which loops
@@ -78,21 +79,27 @@ class RepairProspects {
  private:
   struct Seen;
   struct Outcome;
+  struct DrawnPlant;
 
   std::vector<RepairProspect> candidates(const Seen& seen, const std::optional<RepairedChannel>& given) const;
   void run(const Seen& seen, std::vector<RepairProspect>& prospects) const;
+  DrawnPlant drawn(const Seen& seen, RandomStream& random) const;
+  /// The loop as it is, and then after each repair; empty on a plant that does not count.
+  std::vector<std::optional<Outcome>> outcomes(const Seen& seen, const DrawnPlant& drawn,
+                                               const std::vector<RepairProspect>& prospects,
+                                               const QpSolverFactory& factory) const;
   Eigen::RowVectorXd response(const Seen& seen, const TransferFunction& channel, Eigen::Index input) const;
   /// Does the loop of a plant resemble the record? Only asked where samples are counted, as in the record of
   /// a plant: there the controller of the study may be unstable on a plant on which that of the record is
   /// not.
   bool may_have_made(const Seen& seen, const Outcome& now) const;
   std::optional<Outcome> outcome(const TransferMatrix& model, const TransferMatrix& plant, const Seen& seen,
-                                 const Eigen::MatrixXd& disturbance) const;
+                                 const Eigen::MatrixXd& disturbance, const QpSolverFactory& factory) const;
 
   const Study& study_;
   const AdequacyOptions& options_;
   Eigen::VectorXd initial_;  ///< inputs before the record
-  const QpSolverFactory& factory_;
+  ForEachWithSolver for_each_;
 };
 
 /// By expected gain, the largest first; those that run on no plant last.
