@@ -11,23 +11,25 @@ namespace mpm {
 inline constexpr int kArchiveMajorVersion = 2;
 inline constexpr int kArchiveMinorVersion = 6;
 
-/// Writes a run and its findings as an archive (docs/file_format.md), all or nothing
-/// (write_file_atomically()): HDF5 that also opens as netCDF-4. The data sets depend on the study and the
-/// records only; what differs between two runs of a study (time, command, jobs) is in attributes.
+/// Writes a run and its findings as an archive (docs/file_format.md): an HDF5 file that also opens as
+/// netCDF-4. The file is written completely or not at all (write_file_atomically()). The data sets depend
+/// only on the study and the records; whatever differs between two runs of a study (time, command, jobs) is
+/// in attributes.
 ///
-/// Errors: ArchiveError when the file cannot be written; what was at `path` is then as it was.
+/// Errors: ArchiveError if the file cannot be written; a file that was at `path` then stays as it was.
 void write_archive(const std::filesystem::path& path, const Campaign& campaign,
                    const StudyFindings& findings);
 
-/// Reads an archive. All numbers come back bit for bit; the study is read again from the attribute `scenario`
-/// and gets the seed in `master_seed`.
+/// Reads an archive. All numbers come back bit for bit. The study is parsed again from the attribute
+/// `scenario` and gets the seed in `master_seed`.
 ///
-/// Errors: ArchiveError, which names the file and what is wrong or missing in it, for a file that is no
-/// archive, is not whole, is damaged, or has another major version.
+/// Errors: ArchiveError, which names the file and what is wrong or missing in it, if the file is no archive,
+/// is incomplete or damaged, or has another major version.
 Campaign read_archive(const std::filesystem::path& path);
 
-/// The same, for callers that do not need all records at once: except in a study that names its scenarios,
-/// they stay in the file (Campaign::streamed). What is wrong in a single one is thrown when it is read.
+/// Reads an archive for callers that do not need all records at once: the records stay in the file
+/// (Campaign::streamed), except in a study that names its scenarios. An error in a single record is thrown
+/// when that record is read.
 Campaign stream_archive(const std::filesystem::path& path);
 
 }  // namespace mpm

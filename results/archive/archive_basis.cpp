@@ -49,7 +49,7 @@ std::vector<Row<OperatingPoint>> point_rows(const Study& study) {
                                             }})};
 }
 
-/// The numbers of the chain, as an answer has them.
+/// The numbers of the chain, described as in an answer.
 std::vector<Row<Diagnosis>> kept_rows(const Study& study) {
   std::vector<Row<Diagnosis>> rows = diagnosis_rows(study);
   for (Row<Diagnosis>& row : rows)
@@ -57,7 +57,7 @@ std::vector<Row<Diagnosis>> kept_rows(const Study& study) {
   return rows;
 }
 
-/// Autocorrelation of each row; NaN for a row that has none.
+/// Returns the autocorrelation of each row; NaN for a row that has none.
 Eigen::MatrixXd autocorrelations(const Eigen::MatrixXd& signal, Eigen::Index rows, Eigen::Index max_lag) {
   Eigen::MatrixXd values = Eigen::MatrixXd::Constant(rows, max_lag + 1, kNaN);
   for (Eigen::Index i = 0; i < signal.rows(); ++i)
@@ -66,7 +66,7 @@ Eigen::MatrixXd autocorrelations(const Eigen::MatrixXd& signal, Eigen::Index row
   return values;
 }
 
-/// For people: they follow from the signals and are not read back.
+/// Writes the autocorrelations for people: they follow from the signals and are not read back.
 void write_autocorrelations(Hdf5Group& group, const Study& study, const BasisCase& basis) {
   const Eigen::Index lags = lag_count(study);
   write_sample_dimension(group, "lag", "lag in samples", "lag_time", study, 0, lags);
@@ -113,7 +113,7 @@ BasisCase read_basis(const Hdf5Group& root, const Study& study, NominalSensitivi
   load_rows(group, solver_rows(), basis.trajectory.solver, file);
   load_rows(group, signal_rows(study), basis.trajectory, file);
   if (basis.trajectory.status != ControlStatus::ok)
-    return basis;  // without nominal outputs and without a diagnosis
+    return basis;  // there are no nominal outputs and no diagnosis
   load_rows(group, nominal_rows(study), basis.nominal, file);
   load_rows(group, kept_rows(study), basis.diagnosis, file);
   return basis;

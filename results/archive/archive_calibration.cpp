@@ -1,4 +1,5 @@
-// The scores of the calibration loops. The thresholds follow from them: they are findings, and not read back.
+// The scores of the calibration loops. The thresholds follow from the scores: they are findings and are not
+// read back.
 
 #include <array>
 #include <numeric>
@@ -30,7 +31,7 @@ std::vector<Row<CalibrationLoop>> loop_score_rows(std::size_t methods) {
               "method", methods, &CalibrationLoop::scores)};
 }
 
-/// Throws ArchiveError when a property of the group is not that of the study.
+/// Throws ArchiveError if a property of the group differs from the study.
 void require_equal(std::uint64_t found, std::uint64_t expected, const char* what, const std::string& file) {
   if (found != expected)
     throw ArchiveError(fmt::format("{}: {} of '/{}': found {}; allowed: {}", file, what, kCalibrationGroup,

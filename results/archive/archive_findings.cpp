@@ -42,7 +42,7 @@ void write_finding_rows(Hdf5Group& group, const std::vector<Finding>& findings) 
   store_rows(group, {"finding"}, rows, findings);
 }
 
-/// Of the chain: true CV against predicted CV.
+/// Writes the confusion matrix of the chain: true CV against predicted CV.
 void write_confusion(Hdf5Group& group, const Study& study, const std::vector<KindFindings>& kinds) {
   Names names;
   for (const KindFindings& kind : kinds)

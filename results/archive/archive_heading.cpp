@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kFileType = "mpmbench archive";
 constexpr const char* kConventions = "CF-1.8";
 
-/// Of an archive of an earlier format: the command that made it makes it anew.
+/// For an archive of an earlier format, returns the command that made it and can make it again.
 std::string how_to_make_anew(const Hdf5Group& root, const std::vector<std::int32_t>& version) {
   if (version.empty() || version.front() >= kArchiveMajorVersion)
     return "";

@@ -1,4 +1,5 @@
-// Who the methods are whose answers an archive has: the dimension `method` and attributes of their groups.
+// Describes the methods whose answers an archive has: the dimension `method` and the attributes of their
+// groups.
 
 #include <cmath>
 

@@ -16,8 +16,8 @@
 namespace mpm {
 namespace {
 
-// Records that are in memory at a time: those of one chunk, which is then read once, unless they have long
-// loops.
+// Limits of the records in memory at a time: those of one chunk, so that it is read only once, but fewer if
+// the loops are long.
 constexpr std::size_t kBlockRecords = kChunkValues;
 constexpr std::size_t kBlockBytes = std::size_t{1} << 25;
 
@@ -28,10 +28,10 @@ Hdf5Group group_at(const Hdf5Group& root, const std::string& path) {
                                       : group_at(root.group(path.substr(0, slash)), path.substr(slash + 1));
 }
 
-/// Values of a variable, in memory and in the file, for each of these records.
+/// The values of a variable for each of these records, in memory and in the file.
 struct Rows {
   std::vector<ExperimentRecord*> records;
-  std::size_t first, all;  ///< in the file
+  std::size_t first, all;  ///< row of the first record, number of rows in the file
 
   void read(const Hdf5Group& group, const RecordRow& row, const std::string& file) const {
     std::vector<std::size_t> shape{all};
@@ -50,7 +50,7 @@ struct Rows {
   }
 };
 
-/// A changed tuning is that of a weight which the controller has.
+/// Tells whether the controller has the weight that a change of the tuning changes.
 bool is_possible(const TuningChange& tuning, const MpcOptions& controller) {
   if (tuning.parameter < TuningParameter::move_suppression)
     return false;
@@ -58,9 +58,9 @@ bool is_possible(const TuningChange& tuning, const MpcOptions& controller) {
   return std::find(variables.begin(), variables.end(), tuning.index) != variables.end();
 }
 
-/// What the variables cannot see one by one: an experiment with a fault has it somewhere, a fault with a
-/// mismatch has a channel and a parameter, a changed tuning a weight, and a verdict names a CV. Everything
-/// that counts takes this as given.
+/// Checks what no variable shows alone: an experiment with a fault has a place for it, a mismatch has a
+/// channel and a parameter, a changed tuning has a weight, and a verdict names a CV. All code that counts
+/// relies on this.
 void require_consistent(const ExperimentRecord& record, const Study& study, const std::string& file) {
   const auto require = [&](bool condition, const std::string& variable, const char* allowed) {
     if (!condition)
@@ -90,13 +90,13 @@ void require_consistent(const ExperimentRecord& record, const Study& study, cons
   }
 }
 
-/// Does the study say more of its experiments than the variables of an archive do?
+/// Does the study say more about its experiments than the variables of an archive do?
 bool has_further_draws(const Study& study) {
   return study.names_scenarios() || !study.has_plain_faults();
 }
 
-/// The draw of a record from the study, whose faults are in no variable or not all of them; its scales are in
-/// variables.
+/// Takes the draw of a record from the study, because the variables hold none or only some of its faults. The
+/// scales of the draw are in variables.
 void take_draw(ExperimentRecord& record, const Study& study, const std::string& file) {
   if (study.names_scenarios() && record.draw.index >= study.experiment_count())
     throw ArchiveError(
@@ -116,7 +116,7 @@ void take_draw(ExperimentRecord& record, const Study& study, const std::string& 
   record.draw = std::move(draw);
 }
 
-/// In the order of their index, none twice.
+/// Throws ArchiveError unless the indices ascend, each one once.
 void require_order(const std::vector<std::int64_t>& indices, const std::string& file) {
   const auto place = std::adjacent_find(indices.begin(), indices.end(), std::greater_equal<>());
   if (place != indices.end())
@@ -128,7 +128,7 @@ void require_order(const std::vector<std::int64_t>& indices, const std::string& 
         fmt::format("{}: variable 'experiment': found {}; allowed: 0 or more", file, indices.front()));
 }
 
-/// The places, among the experiments with these indices, of those that stand along a dimension of a group.
+/// Returns the places in `indices` of the experiments that a dimension of a group lists.
 std::vector<std::size_t> places_along(const Hdf5Group& group, const RecordTable& table,
                                       const std::vector<std::int64_t>& indices, const std::string& file) {
   std::vector<std::size_t> places;
@@ -145,7 +145,7 @@ std::vector<std::size_t> places_along(const Hdf5Group& group, const RecordTable&
   return places;
 }
 
-/// Of a record that stands in all tables.
+/// Returns about how many bytes a record needs that is in all tables.
 std::size_t bytes_of(const std::vector<RecordTable>& tables) {
   std::size_t bytes = sizeof(ExperimentRecord);
   for (const RecordTable& table : tables)
@@ -228,14 +228,14 @@ void ArchiveRecordReader::read_table(std::size_t t, std::size_t first,
 
 RecordRange streamed(std::shared_ptr<const ArchiveRecordReader> reader) {
   struct Block {
-    std::size_t first = 0, place = 0;  // in the file, in the block
+    std::size_t first = 0, place = 0;  // first: in the file; place: in the block
     std::vector<ExperimentRecord> records = {};
   };
   return {reader->size(),
           [reader]() -> RecordRange::Next {
             return [reader, block = std::make_shared<Block>()]() -> const ExperimentRecord* {
               if (block->place == block->records.size()) {
-                *block = {.first = block->first + block->place};  // gone before the next one is read
+                *block = {.first = block->first + block->place};  // freed before the next one is read
                 const std::size_t left = reader->size() - block->first;
                 if (left == 0)
                   return nullptr;

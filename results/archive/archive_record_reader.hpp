@@ -12,22 +12,22 @@
 
 namespace mpm {
 
-/// Reads the records of an archive, all of them or some: the reverse of write_records().
+/// Reads all or some of the records of an archive: the reverse of write_records().
 ///
-/// In memory are the index of each experiment and, of tables that some experiments stand in, their places.
-/// Errors: ArchiveError, which names the file and what is wrong or missing in it; that of a single record
-/// comes when it is read.
+/// In memory it keeps the index of each experiment and, for each table that covers only some experiments,
+/// their places. Errors: ArchiveError, which names the file and what is wrong or missing in it; an error in a
+/// single record is thrown when that record is read.
 class ArchiveRecordReader {
  public:
-  /// `root` is that of the archive of this study, which has these tables; `file` is for messages.
+  /// `root` is the root group of an archive of `study`, which has these tables. `file` is for messages.
   ArchiveRecordReader(const Hdf5Group& root, const Study& study, const AssessmentForms& forms,
                       std::vector<RecordTable> tables, std::string file);
 
   std::size_t size() const { return indices_.size(); }
-  /// How many are best read at a time.
+  /// Returns how many records are best read at a time.
   std::size_t block() const { return block_; }
 
-  /// `count` records from the place `first` on, in the order of their index.
+  /// Returns `count` records, starting with number `first`, in the order of their index.
   std::vector<ExperimentRecord> read(std::size_t first, std::size_t count) const;
 
  private:
@@ -37,13 +37,13 @@ class ArchiveRecordReader {
   std::string file_;
   std::vector<std::int64_t> indices_;
   std::vector<RecordTable> tables_;
-  std::vector<Hdf5Group> groups_;                 ///< of the tables
-  std::vector<std::vector<std::size_t>> places_;  ///< of the experiments in a table that not all stand in
-  std::vector<double> milliseconds_;              ///< of the methods, which no record has in the file
+  std::vector<Hdf5Group> groups_;                 ///< group of each table
+  std::vector<std::vector<std::size_t>> places_;  ///< places in each table that only some experiments are in
+  std::vector<double> milliseconds_;              ///< processor time of each method; not stored in records
   std::size_t block_ = 1;
 };
 
-/// The records, one block at a time.
+/// Returns the records as a range that holds one block at a time in memory.
 RecordRange streamed(std::shared_ptr<const ArchiveRecordReader> reader);
 
 }  // namespace mpm

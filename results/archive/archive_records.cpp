@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-/// How many experiments stand in each table.
+/// Returns how many experiments are in each table.
 std::vector<std::size_t> lengths_of(const std::vector<RecordTable>& tables, const RecordRange& records) {
   std::vector<std::size_t> lengths(tables.size(), 0);
   records.each([&](const ExperimentRecord& record) {
@@ -24,7 +24,7 @@ std::vector<std::size_t> lengths_of(const std::vector<RecordTable>& tables, cons
   return lengths;
 }
 
-/// The group with this path, made unless it is there; `made` keeps those that are.
+/// Returns the group with this path and creates it if it is missing; `made` keeps the groups created so far.
 Hdf5Group& group_of(std::map<std::string, Hdf5Group>& made, const std::string& path) {
   if (const auto found = made.find(path); found != made.end())
     return found->second;
@@ -34,7 +34,7 @@ Hdf5Group& group_of(std::map<std::string, Hdf5Group>& made, const std::string& p
   return made.emplace(path, group_of(made, parent).create_group(name)).first->second;
 }
 
-/// The windows by their number, and when each ends: that is when its verdict is there.
+/// Writes the number of each window and the time at which it ends, when its verdict is available.
 void write_windows(Hdf5Group& group, const Study& study) {
   std::vector<std::int32_t> numbers;
   std::vector<double> ends;
@@ -77,7 +77,7 @@ struct VariableWriter {
   std::function<void()> finish;
 };
 
-/// Rows to which write(record, place) puts what each record has.
+/// Writes rows; write(record, place) puts the values of each record in its row.
 template <class T, class Write>
 VariableWriter writer_of(Hdf5Rows<T> rows, const Write& write) {
   const auto shared = std::make_shared<Hdf5Rows<T>>(std::move(rows));
@@ -85,7 +85,7 @@ VariableWriter writer_of(Hdf5Rows<T> rows, const Write& write) {
           [shared] { shared->finish(); }};
 }
 
-/// The indices of the experiments that stand in a table.
+/// Writes the indices of the experiments that are in a table.
 VariableWriter index_writer(Hdf5Group& group, const RecordTable& table, std::size_t length) {
   const NumberText text{table.dimension, "index of the experiment in the study"};
   return writer_of(
@@ -93,7 +93,7 @@ VariableWriter index_writer(Hdf5Group& group, const RecordTable& table, std::siz
       [](const ExperimentRecord& record, std::int64_t* place) { *place = record.draw.index; });
 }
 
-/// `row` must outlive it.
+/// `row` must outlive the writer.
 VariableWriter variable_writer(Hdf5Group& group, const RecordTable& table, const RecordRow& row) {
   std::vector<std::string> dimensions{table.dimension};
   dimensions.insert(dimensions.end(), row.dimensions.begin(), row.dimensions.end());

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kPerturbationGroup = "s0_perturbation";
 
-/// A dimension along the CVs of the items.
+/// Writes a dimension along the CVs of the items.
 template <class Item>
 void write_cv_dimension(Hdf5Group& group, const std::string& name, const std::string& long_name,
                         const Study& study, const std::vector<Item>& items) {

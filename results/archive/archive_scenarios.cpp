@@ -26,7 +26,7 @@ std::vector<RecordRow> scenario_truth_rows(const Study& study) {
   const auto said = [&study](const Record& record) -> const Scenario& {
     return study.scenarios[static_cast<std::size_t>(record.draw.index)];
   };
-  static_assert(static_cast<int>(FaultSource::none) == 0);  // what stays of a CV that nothing affects
+  static_assert(static_cast<int>(FaultSource::none) == 0);  // a CV that no fault affects keeps this value
   const RowAccess<Record, std::int8_t> affected{[](const Record& record, std::int8_t* sources) {
     for (const AffectedCv& each : record.draw.affected())
       sources[each.cv] = static_cast<std::int8_t>(each.by);

@@ -17,7 +17,7 @@
 
 namespace mpm {
 
-/// How, when and by which program a run was made. Nothing in it changes a result, except the solver.
+/// How, when and by which program a run was made. None of it changes a result, except the solver.
 struct CampaignInfo {
   std::string mpmbench_version;
   std::string git_sha;
@@ -31,7 +31,7 @@ struct CampaignInfo {
   double audit_seconds = 0.0;  ///< processor time of the audit
 };
 
-/// A method that has assessed the loops of a campaign, and by which program and command it did.
+/// A method that has assessed the loops of a campaign, with the program and the command that ran it.
 struct CampaignMethod {
   std::shared_ptr<const AssessmentForm> form;
   std::string mpmbench_version;
@@ -49,32 +49,33 @@ struct Campaign {
   BasisCase basis;
   std::vector<CampaignMethod> methods;
   std::vector<ExperimentRecord> records;
-  /// In place of `records`, when these are too many for the memory: findings_of(), write_archive() and
-  /// summary_document() take them from here. Never in a study of named scenarios.
+  /// Replaces `records` if they are too many for the memory: findings_of(), write_archive() and
+  /// summary_document() take them from here. Never set in a study of named scenarios.
   std::optional<RecordRange> streamed = {};
-  /// What the methods say about the calibration loops, none of them kept; no loops unless the study asks for
-  /// them.
+  /// What the methods say about the calibration loops, of which none is kept. It has no loops unless the
+  /// study asks for them.
   Calibration calibration;
   std::vector<AuditedStep> audit;  ///< in the order of experiment and step
 };
 
-/// The forms of its methods, and their names.
+/// The forms of the methods of a campaign, and the names of the methods.
 AssessmentForms forms_of(const Campaign& campaign);
 std::vector<std::string> method_names(const Campaign& campaign);
 
 /// Stores the command line by which the run was made and assessed.
 void note_command(Campaign& campaign, const std::string& command_line);
 
-/// The place of the method that diagnoses (diagnoses()); as many as there are methods when none does.
+/// Returns the position of the method that diagnoses (diagnoses()), or the number of methods if none does.
 std::size_t chain_place(const Campaign& campaign);
 
-/// Its records, wherever they are.
+/// Returns the records of a campaign, in memory or streamed.
 RecordRange records_of(const Campaign& campaign);
 
-/// All of it that is compared with another run. `forms`: forms_of(campaign), which must outlive it.
+/// Returns everything of a campaign that is compared with another run. `forms` is forms_of(campaign) and must
+/// outlive the result.
 StudyRun study_run(const Campaign& campaign, const AssessmentForms& forms);
 
-/// Its findings.
+/// Computes the findings of a campaign.
 StudyFindings findings_of(const Campaign& campaign);
 
 }  // namespace mpm

@@ -24,7 +24,7 @@ void add_keys(const OptionJson& value, const std::string& key, Keys& keys) {
     add_keys(item.value(), fmt::format("{}.{}", key, item.key()), keys);
 }
 
-/// What decides on the answers of a method from outside.
+/// Returns the keys that decide the answers of a method from outside.
 Keys keys_of(const MethodDescription& method) {
   Keys keys;
   const std::string of = fmt::format("method.{}", method.name);
@@ -39,7 +39,7 @@ Keys keys_of(const MethodDescription& method) {
   return keys;
 }
 
-/// A key that only one of them has has no value in the other.
+/// Adds the keys whose values differ. A key that only one side has gets an empty value on the other.
 void add_differences(const Keys& before, const Keys& now, std::vector<StudyDifference>& differences) {
   std::set<std::string> names;
   for (const Keys* const keys : {&before, &now})

@@ -7,9 +7,9 @@
 
 namespace mpm {
 
-/// What decides the answers of two campaigns and differs between them: the keys of their studies
-/// (study_differences()), and of each method from outside that both have the keys of its file, by the names
-/// that these have there:
+/// Lists the settings that decide the answers of two campaigns and differ between them. These are the keys of
+/// their studies (study_differences()) and, for each method that both have, the keys of its method file if it
+/// comes from outside, under the names that they have in that file:
 ///
 /// | key                        | value                                                             |
 /// |----------------------------|-------------------------------------------------------------------|

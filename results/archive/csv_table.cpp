@@ -37,7 +37,7 @@ std::string cell(const NumberText& text, const T& value) {
   }
 }
 
-/// The coordinates of a dimension, by name where they have one.
+/// Returns the coordinates of a dimension: names if it has them, else numbers.
 std::vector<std::string> coordinates(const Campaign& campaign, const std::string& dimension,
                                      std::size_t length) {
   const Study& study = campaign.study;
@@ -60,7 +60,7 @@ std::vector<std::string> coordinates(const Campaign& campaign, const std::string
   return names;
 }
 
-/// The headings of the columns of a row of records, in the order of its values.
+/// Returns the headings of the columns of a row of records, in the order of its values.
 std::vector<std::string> headings(const Campaign& campaign, const RecordRow& row, std::size_t dimensions) {
   std::vector<std::string> list{row.text.name};
   for (std::size_t d = 0; d < dimensions; ++d) {
@@ -73,7 +73,7 @@ std::vector<std::string> headings(const Campaign& campaign, const RecordRow& row
   return list;
 }
 
-/// The cells of a row of one record.
+/// Returns the cells of a row for one record.
 std::vector<std::string> cells(const RecordRow& row, const ExperimentRecord& record) {
   std::vector<std::string> list;
   take_values(row, record, [&](const auto& values) {
@@ -102,7 +102,7 @@ void write_findings(const Campaign& campaign, const Write& write) {
               fmt::format("{}", finding.count), fmt::format("{}", finding.hits), number(finding.reported)}));
 }
 
-/// A signal that the methods saw as something else than it was.
+/// A signal that the record showed to the methods differently from its true values.
 struct RecordedSignal {
   const char* name;
   const char* variables;
@@ -120,7 +120,7 @@ std::vector<RecordedSignal> recorded_signals(const RecordOptions& record) {
   return signals;
 }
 
-/// As the methods saw it, row by row.
+/// Returns the values of a signal as the methods saw them, row by row.
 std::vector<std::string> recorded_cells(const Trajectory& kept, const RecordedSignal& signal) {
   const RowMajorMatrix values = kept.*signal.member;
   std::vector<std::string> list;
@@ -136,8 +136,8 @@ bool all_have_truth(const Campaign& campaign) {
   return all;
 }
 
-/// One row a sample of the loops that were kept, as they were measured, and as their record shows them where
-/// that is something else.
+/// Writes one line per sample of each kept loop: the signals as measured and, for each signal that the record
+/// shows differently, also the recorded values.
 void write_loops(const Campaign& campaign, const Write& write) {
   const bool truth = all_have_truth(campaign);
   std::vector<RecordRow> signals;

@@ -16,8 +16,8 @@ void write_plant_dimensions(Hdf5Group& group, const PlantModel& plant);
 void write_variable_dimension(Hdf5Group& group, const std::string& name, const std::string& long_name,
                               const std::vector<PlantModel::Variable>& variables);
 
-/// Writes a dimension `name` of `count` whole numbers from `first` on that count samples, and along it the
-/// variable `time_name` with the same in the time unit of the plant.
+/// Writes a dimension `name` of `count` consecutive whole numbers, starting at `first`, that count samples.
+/// Along it, writes the variable `time_name` with the same points in the time unit of the plant.
 void write_sample_dimension(Hdf5Group& group, const std::string& name, const std::string& long_name,
                             const std::string& time_name, const Study& study, int first, Eigen::Index count);
 

@@ -17,7 +17,7 @@ using AttributeValue =
 /// Attributes in the order in which they are written.
 using Attributes = std::vector<std::pair<std::string, AttributeValue>>;
 
-/// A large variable is stored in chunks of whole rows with about so many values.
+/// Large variables are stored in chunks of whole rows with about this many values.
 inline constexpr std::size_t kChunkValues = 16384;
 
 }  // namespace mpm

@@ -11,9 +11,9 @@
 namespace mpm::hdf5 {
 namespace {
 
-/// Such a file as the library sees it.
+/// A DiskFile as the library sees it.
 struct OpenDiskFile {
-  H5FD_t base = {};  ///< first, as the library wants it
+  H5FD_t base = {};  ///< first, as the library requires
   DiskFile disk;
   haddr_t end_of_allocation = 0, end_of_file = 0;
 

@@ -4,9 +4,9 @@
 
 namespace mpm::hdf5 {
 
-/// The driver of an archive on the disk (DiskFile), made or read, known to the library from the first call
-/// on. Its info is an int*, where the number of the first error of the system is kept: the library crashes
-/// when it ends with a file that it could not write or close, so that it hears of no such error.
+/// The HDF5 driver of an archive on the disk (DiskFile), for writing and reading. The first call registers it
+/// with the library. Its info is an int* that receives the number of the first system error. The driver hides
+/// such errors from the library, because the library crashes at exit if it could not write or close a file.
 hid_t disk_driver();
 
 }  // namespace mpm::hdf5

@@ -14,10 +14,10 @@
 namespace mpm {
 namespace {
 
-/// In the format of HDF5 1.8 at most, which netCDF-4 takes. Tracked objects get checksums by it. The
-/// superblock must be the earliest one: of a later one H5Fget_file_image (1.10.8) spoils the checksum,
-/// because it resets a flag below it. The library locks no file: ours are locked by others, or lie where
-/// nobody can.
+/// Sets the format of HDF5 1.8 at most, which netCDF-4 can read. In this format tracked objects have
+/// checksums. The superblock must be of the earliest version: H5Fget_file_image (1.10.8) breaks the checksum
+/// of a later one, because it resets a flag that the checksum covers. The library locks no file: our files
+/// are locked by other means, or are where nobody can lock.
 hdf5::Handle file_access(const hdf5::Place& place) {
   hdf5::Handle access = place.own(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
   place.check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "make properties");
@@ -32,8 +32,8 @@ hdf5::Handle memory_access(const hdf5::Place& place) {
   return access;
 }
 
-/// Through the driver of ours: the library crashes at the end of the process when a file could not be written
-/// or closed. The first error is kept in `error`, which outlives the file.
+/// Opens files through our own driver: otherwise the library crashes at exit if a file could not be written
+/// or closed. The first error is stored in `error`, which must outlive the file.
 hdf5::Handle disk_access(const hdf5::Place& place, int& error) {
   hdf5::Handle access = file_access(place);
   int* const kept = &error;
@@ -41,7 +41,7 @@ hdf5::Handle disk_access(const hdf5::Place& place, int& error) {
   return access;
 }
 
-/// A new file at `path`, which is a name only when `access` says that it is in memory.
+/// Creates a file at `path`; if `access` keeps the file in memory, `path` is only a name.
 hdf5::Handle create_file(const hdf5::Place& place, const std::string& path, const hdf5::Handle& access) {
   const hdf5::Handle creation = place.own(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
   set_group_properties(place, creation.get());
@@ -71,7 +71,7 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
   hdf5::silence_library();
   const hdf5::Place place{path.string(), "group", "/", ""};
   auto disk = std::make_shared<int>(0);
-  const hdf5::Handle access = disk_access(place, *disk);  // until the error is read: its end would clear it
+  const hdf5::Handle access = disk_access(place, *disk);  // stays open until the error is read
   const hdf5::Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
   if (file.get() < 0)
     throw ArchiveError(

@@ -11,12 +11,12 @@
 #include "results/archive/hdf5_file.hpp"
 #include "results/archive/hdf5_group_state.hpp"
 
-// What Hdf5Group reads in files that others have written.
+// The members of Hdf5Group that read files of other programs.
 
 namespace mpm {
 namespace {
 
-constexpr std::size_t kMostForeignBytes = 400'000'000;  // of the values of a variable
+constexpr std::size_t kMostForeignBytes = 400'000'000;  // of the values of one variable
 
 bool is_text_type(hid_t type) {
   return H5Tget_class(type) == H5T_STRING;
@@ -26,7 +26,7 @@ bool is_number_type(hid_t type) {
   return H5Tget_class(type) == H5T_INTEGER || H5Tget_class(type) == H5T_FLOAT;
 }
 
-/// Refuses what HDF5 would read in another file, which somebody else has chosen.
+/// Refuses values that HDF5 would read from another file, which somebody else has chosen.
 void refuse_other_file(const hdf5::Place& place, bool other) {
   if (other)
     place.refuse("values that lie in another file", "values in this one");
@@ -38,7 +38,7 @@ unsigned long file_number(const hdf5::Place& place, hid_t object) {
   return info.fileno;
 }
 
-/// A variable whose values are in this file.
+/// Opens a variable and checks that its values are in this file.
 hdf5::Handle open_own_dataset(const hdf5::Place& place, hid_t group) {
   hdf5::Handle dataset = open_dataset(place, group);
   const hdf5::Handle properties =
@@ -49,7 +49,8 @@ hdf5::Handle open_own_dataset(const hdf5::Place& place, hid_t group) {
   return dataset;
 }
 
-/// How many values a variable has, so many of `bytes` each that they can go to memory.
+/// Returns how many values a variable has, of `bytes` each. Refuses a variable that is too large for the
+/// memory.
 std::size_t bounded_count(const hdf5::Place& place, const hdf5::Shape& shape, std::size_t bytes) {
   const std::string most = fmt::format("at most {} bytes", kMostForeignBytes);
   hsize_t count = 1;
@@ -63,7 +64,7 @@ std::size_t bounded_count(const hdf5::Place& place, const hdf5::Shape& shape, st
   return count;
 }
 
-/// Texts of any length out of `read`, which fills a buffer of a given type in memory.
+/// Returns texts of any length; `read` fills a buffer of a given type in memory.
 template <class Read>
 std::vector<std::string> any_texts(hid_t type, hid_t space, std::size_t count, Read read) {
   if (H5Tis_variable_str(type) > 0)
@@ -80,7 +81,7 @@ std::vector<std::string> any_texts(hid_t type, hid_t space, std::size_t count, R
   return texts;
 }
 
-/// An attribute of a variable, and its type; none when there is none. One with several values is refused.
+/// An attribute of a variable and its type, if there is one. An attribute with several values is refused.
 struct ForeignAttribute {
   hdf5::Handle attribute, type, space;
 
@@ -102,7 +103,8 @@ herr_t keep_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
-/// The objects of a kind in a group. One that lies in another file is refused when it is read.
+/// Returns the names of the objects of a kind in a group. An object in another file is refused when it is
+/// read.
 std::vector<std::string> names_in(const hdf5::Place& place, hid_t group, H5O_type_t kind) {
   std::vector<std::string> links, names;
   place.check(H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &links), "list it");

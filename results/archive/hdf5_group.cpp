@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// The dimensions of a variable to come, in its group.
+/// The dimensions of a variable that is about to be written in this group.
 struct Hdf5Group::Scales {
   std::vector<hdf5::Handle> datasets = {};
   hdf5::Shape shape = {};
@@ -92,9 +92,9 @@ struct Hdf5Rows<T>::State {
   hdf5::Place place;
   hdf5::Handle dataset;
   hdf5::Shape shape;
-  std::size_t row;      ///< values in one
+  std::size_t row;      ///< values in a row
   std::size_t block;    ///< rows that are written at once
-  hsize_t written = 0;  ///< rows
+  hsize_t written = 0;  ///< rows written so far
   std::vector<T> waiting = {};
 
   State(hdf5::Place at, hdf5::Handle of, hdf5::Shape size)
@@ -194,7 +194,7 @@ std::vector<T> Hdf5Group::read_list(const std::string& name) const {
   return read_dataset<T>(place, dataset);
 }
 
-// --- The types of values that there are -------------------------------------------------------------------
+// --- The types of values ----------------------------------------------------------------------------------
 
 #define MPM_INSTANTIATE_VARIABLE(T)                                                                          \
   template void Hdf5Group::write_dimension<T>(const std::string&, const std::vector<T>&, const Attributes&); \

@@ -9,9 +9,9 @@
 
 namespace mpm::hdf5 {
 
-/// The library keeps a file open while a group of it is, so that the root group stands for the file.
+/// The library keeps a file open as long as one of its groups is open. So the root group stands for the file.
 struct GroupState {
-  DiskError disk;  ///< of a file that is made on the disk; it is closed with the last group
+  DiskError disk;  ///< error of a file written on the disk; closed with the last group
   Handle group;
   std::string file;
   std::string path;  ///< ends with "/"

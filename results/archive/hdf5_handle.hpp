@@ -5,15 +5,16 @@
 
 #include <hdf5.h>
 
-// What every use of the HDF5 library needs: identifiers that close themselves, and errors with a place.
+// What every use of the HDF5 library needs: identifiers that close themselves, and errors that name the
+// place.
 
 namespace mpm::hdf5 {
 
-/// The library's own account of its last failure, from the place nearest to the cause, as " (TEXT)"; nothing
-/// where it gives none.
+/// Returns the library's own description of its last failure, from the place nearest to the cause, written as
+/// " (TEXT)"; empty if there is none.
 std::string last_error();
 
-/// Our messages take the place of the library's.
+/// Turns off the messages of the library; ours replace them.
 void silence_library();
 
 /// A HDF5 identifier that is closed when it goes out of scope.
@@ -38,14 +39,14 @@ class Handle {
   Close close_;
 };
 
-/// The object at hand, for messages and for the library: `name` in the group with the path `parent`.
+/// The object being worked on, for messages and for the library: `name` in the group with the path `parent`.
 struct Place {
   std::string file, what, parent, name;
 
   [[noreturn]] void fail(const std::string& problem) const;
-  /// InputError for a file from another program that cannot be read.
+  /// Throws InputError for a file of another program that cannot be read.
   [[noreturn]] void refuse(const std::string& found, const std::string& allowed) const;
-  /// fail() with the library's own account when `result` says so.
+  /// Calls fail() with the library's own description if `result` is an error.
   void check(herr_t result, const char* action) const;
   Handle own(hid_t id, Handle::Close close, const char* action) const;
 };

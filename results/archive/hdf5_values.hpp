@@ -10,19 +10,19 @@
 #include "results/archive/hdf5_handle.hpp"
 #include "results/files/utf8.hpp"
 
-// Values of the types that our files have, between the HDF5 library and memory.
+// Converts values of the types in our files between the HDF5 library and memory.
 
 namespace mpm::hdf5 {
 
 using Shape = std::vector<hsize_t>;
 
-/// How many values a shape holds; one that has no dimensions.
+/// Returns how many values a shape holds; 1 if it has no dimensions.
 std::size_t product(const Shape& shape);
 
 Handle make_space(const Place& place, const Shape& shape);
 Shape shape_of_space(const Place& place, hid_t space);
 
-/// Texts of any length, UTF-8.
+/// The type of UTF-8 texts of any length.
 Handle string_type(const Place& place);
 
 /// The type of T in a file.
@@ -39,7 +39,7 @@ Handle type_of(const Place& place) {
   return place.own(H5Tcopy(type), H5Tclose, "make a type");
 }
 
-/// Throws ArchiveError unless `found` is that.
+/// Throws ArchiveError unless `found` is the type of T in a file.
 template <class T>
 void require_type(const Place& place, hid_t found) {
   bool same = false;
@@ -51,7 +51,7 @@ void require_type(const Place& place, hid_t found) {
     place.fail("another type of values than expected");
 }
 
-/// Calls write(buffer) with the values as the library takes them.
+/// Calls write(buffer) with the values in the form that the library expects.
 template <class T, class Write>
 void with_buffer(const std::vector<T>& values, Write write) {
   if constexpr (std::is_same_v<T, std::string>) {
@@ -66,7 +66,8 @@ void with_buffer(const std::vector<T>& values, Write write) {
   }
 }
 
-/// `count` values, which read(buffer) gets from the library in memory that it may allocate.
+/// Returns `count` values that read(buffer) gets from the library. The library may allocate memory for them,
+/// which is freed here.
 template <class T, class Read>
 std::vector<T> from_buffer(std::size_t count, hid_t type, hid_t space, Read read) {
   if constexpr (std::is_same_v<T, std::string>) {

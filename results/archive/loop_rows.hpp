@@ -19,7 +19,7 @@ std::vector<Row<Trajectory>> signal_rows(const Study& study);
 /// y_sim, y0 and y0_diag.
 std::vector<Row<NominalOutputs>> nominal_rows(const Study& study);
 
-/// A signal of this study: a matrix with one row a "cv", "mv" or "md", and one column a sample.
+/// A signal of this study: a matrix with one row for each "cv", "mv" or "md", and one column for each sample.
 template <class Owner, class Lens>
 Row<Owner> signal_row(const Study& study, NumberText text, const char* rows, Lens lens) {
   const std::string of = rows;

@@ -40,7 +40,7 @@ NumberScope scope_of(const JsonEntry& entry) {
   entry.refuse("loop, cv, channel, cv_lag or window");
 }
 
-/// Of any length: this program has limited them when it wrote them.
+/// Reads a text of any length: this program limited the length when it wrote the text.
 std::string whole_text(const JsonEntry& entry) {
   return entry.text(std::numeric_limits<std::size_t>::max());
 }
@@ -59,7 +59,7 @@ AssessmentNumberInfo number_of(const JsonEntry& entry) {
                        : NumberFinding::none};
 }
 
-/// What archives of earlier programs do not say.
+/// Returns a text, or an empty one if `entry` is from an archive of an earlier program that did not store it.
 std::string text_or_nothing(const JsonEntry& entry, const char* key) {
   const std::optional<JsonEntry> found = entry.find(key);
   return found ? whole_text(*found) : "";

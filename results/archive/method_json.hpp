@@ -8,15 +8,15 @@
 
 namespace mpm {
 
-/// {"name", "title", "verdict", "needs": {...}, "answers": {...}, "stated_false_alarms",
-/// "origin"}: a method for programs.
+/// Returns the description of a method for other programs: {"name", "title", "verdict", "needs": {...},
+/// "answers": {...}, "stated_false_alarms", "origin"}.
 nlohmann::ordered_json method_json(const MethodDescription& method);
 
-/// The same with "numbers": [{"name", "scope", "meaning", "unit", "words", "summarised", "label",
-/// "estimates_ivar_basis"}], as text.
+/// Returns the same as text, with "numbers": [{"name", "scope", "meaning", "unit", "words", "summarised",
+/// "label", "estimates_ivar_basis"}].
 std::string method_description_json(const MethodDescription& method);
 
-/// The description again. Throws ArchiveError for a text that is none; `file` is for its message.
+/// Reads the description back. Throws ArchiveError if the text is no description; `file` is for its message.
 MethodDescription method_description(const std::string& json, const std::string& file);
 
 }  // namespace mpm

@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// The bytes of a row: those of each text after its length, those of all numbers at once.
+/// Writes the bytes of a row: each text after its length, all numbers of a row as one block.
 void write(ByteWriter& writer, const RecordRow& row, const ExperimentRecord& record) {
   take_values(row, record, [&]<class T>(const std::vector<T>& values) {
     if constexpr (std::is_same_v<T, std::string>) {

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// The records of one study as bytes, for the way between processes of this program and into shards, and what
-/// differs between two of them. What was drawn is not among the bytes: it follows from study and index.
+/// Converts records of one study to bytes, which pass between processes of this program and into shards, and
+/// compares two records. What was drawn is not among the bytes: it follows from study and index.
 class RecordBytes {
  public:
   /// `study` must outlive it.
@@ -20,11 +20,11 @@ class RecordBytes {
   /// Every number keeps its bits.
   std::string to_bytes(const ExperimentRecord& record) const;
 
-  /// The record again. Throws std::runtime_error when the bytes are too short or too long or hold what no
-  /// row can be, InputError for an index that is no experiment of the study.
+  /// Reads the record back. Throws std::runtime_error if the bytes are too short or too long or hold a value
+  /// that a row cannot have, and InputError if the index is no experiment of the study.
   ExperimentRecord from_bytes(std::string_view bytes) const;
 
-  /// The names of the rows whose values are not the same, bit for bit.
+  /// Returns the names of the rows whose values differ in any bit.
   std::vector<std::string> differences(const ExperimentRecord& one, const ExperimentRecord& other) const;
 
  private:

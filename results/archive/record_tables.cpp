@@ -29,7 +29,7 @@ void append(const std::vector<Row<Owner>>& further, std::vector<Row<Owner>>& row
   rows.insert(rows.end(), further.begin(), further.end());
 }
 
-/// The lens of what an optional has.
+/// The lens of the content of an optional.
 const auto kContent = [](auto& optional) -> auto& {
   return *optional;
 };
@@ -47,7 +47,8 @@ void set_kind(Draw& draw, std::int8_t value) {
     draw.tuning.emplace();
 }
 
-/// With two random faults both are on the same CV. A fault of another kind affects those that it is said to.
+/// Sets the CV of all faults: two random faults are on the same CV. A fault of another kind affects the CVs
+/// that it states.
 void set_true_cv(Draw& draw, std::int32_t value) {
   if (draw.kind == ExperimentKind::other && value >= 0)
     draw.affected_cvs = std::vector<Eigen::Index>{value};
@@ -57,8 +58,8 @@ void set_true_cv(Draw& draw, std::int32_t value) {
     disturbance.cv = value;
 }
 
-/// A member of the fault of a random experiment, `none` without one. The faults of a named scenario are in
-/// the study, and in no row.
+/// A member of the fault of a random experiment; `none` if there is no fault. The faults of a named scenario
+/// are in the study and not in a row.
 template <class T, class Fault, class Member>
 DrawRow of_fault(NumberText text, std::vector<Fault> Draw::*faults, Member Fault::*member, T none) {
   return value_row<T, Draw>(
@@ -73,7 +74,7 @@ DrawRow of_fault(NumberText text, std::vector<Fault> Draw::*faults, Member Fault
       });
 }
 
-/// A member of the change of the tuning, `none` without one.
+/// A member of the change of the tuning; `none` if there is no change.
 template <class T, class Member>
 DrawRow of_tuning(NumberText text, Member TuningChange::*member, T none) {
   return value_row<T, Draw>(
@@ -125,7 +126,7 @@ DrawRow follows(NumberText text, std::function<T(const Draw&)> get) {
   return value_row<T, Draw>(std::move(text), std::move(get)).only(RowUse::archive_only);
 }
 
-/// What is drawn beyond one parameter of one channel and noise on one CV.
+/// Rows of what is drawn beyond one parameter of one channel and noise on one CV.
 std::vector<DrawRow> further_draws(const Study& study) {
   const auto whole = follows<std::int32_t>;
   std::vector<DrawRow> rows{
@@ -229,8 +230,8 @@ std::vector<DrawRow> draw_rows(const Study& study) {
   return rows;
 }
 
-/// The sizes that pilot loops have found, which bytes have to keep: scales of the faults, with which the draw
-/// is made anew.
+/// The scales of the faults that pilot loops have found. The bytes must keep them, because the experiment is
+/// drawn again with them.
 std::vector<DrawRow> scale_rows(const Study& study) {
   const auto of_scale = [&](const char* name, const char* special, double FaultScales::*scale) {
     return value_row<double, Draw>(
@@ -249,7 +250,7 @@ std::vector<DrawRow> scale_rows(const Study& study) {
 
 // --- How it ended, the truth, and the verdicts ---
 
-/// The same row, put back only into records with status ok.
+/// Returns the same row, read back only into records with status ok.
 RecordRow of_ok(RecordRow row) {
   std::visit(
       [](auto& access) {
@@ -262,7 +263,7 @@ RecordRow of_ok(RecordRow row) {
   return row;
 }
 
-/// The lens of the cost of the faults; that of a record with status ok is made where it is read.
+/// The lens of the cost of the faults. When a record with status ok is read, its cost is created here.
 struct CostLens {
   const FaultCost& operator()(const Record& record) const {
     static const FaultCost none{{}, {}, {}, kNaN, kNaN, kNaN, kNaN};
@@ -276,7 +277,7 @@ struct CostLens {
   }
 };
 
-/// What faults cost in the worlds of a study, except for the ratios of the variances: ivar_basis.
+/// What faults cost in the worlds of a study, without the ratios of the variances: those are in ivar_basis.
 std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
   using C = FaultCost;
   const std::string same =
@@ -315,7 +316,7 @@ std::vector<Row<FaultCost>> fault_cost_rows(const Study& study) {
   return rows;
 }
 
-/// The channels of some inputs in a matrix of RepairGains, `count` of them from column `first` on.
+/// The channels of some inputs in a matrix of RepairGains: `count` columns from column `first` on.
 Row<RepairGains> repair_gain_row(const Study& study, NumberText text, const char* inputs, Eigen::Index first,
                                  Eigen::Index count, Eigen::MatrixXd RepairGains::*member) {
   const Eigen::Index rows = study.cv_count(), all = study.mv_count() + study.md_count();
@@ -340,7 +341,7 @@ Row<RepairGains> repair_gain_row(const Study& study, NumberText text, const char
   return row.from_version(5);
 }
 
-/// What repairs of the model would bring in the worlds of a study.
+/// What repairs of the model would gain in the worlds of a study.
 std::vector<Row<RepairGains>> repair_gain_rows(const Study& study) {
   std::vector<Row<RepairGains>> rows;
   const auto add = [&](const std::string& name, const char* inputs, Eigen::Index first, Eigen::Index count) {
@@ -361,7 +362,7 @@ std::vector<Row<RepairGains>> repair_gain_rows(const Study& study) {
   return rows;
 }
 
-/// The conditions under which the loop worked.
+/// The conditions under which the loop ran.
 std::vector<Row<LoopConditions>> condition_rows() {
   using C = LoopConditions;
   const auto row = [](const char* name, const char* meaning, const char* special, double C::*member) {
@@ -413,7 +414,8 @@ std::vector<Row<AssessmentRecord>> verdict_rows(const Study& study) {
 RecordTable outcomes(const Study& study, const AssessmentForms& forms) {
   RecordTable table;
   table.dimension = "experiment";
-  // A record comes with room for every method; `status` comes first, since it says what else there is.
+  // A record starts with room for every method; `status` comes first, since it tells what else the record
+  // has.
   table.make = [forms](Record& record) { record.assessments = unassessed(forms); };
   table.rows = {
       member_row<std::int8_t>(
@@ -477,7 +479,7 @@ std::vector<std::size_t> lengths_of(const NumberPlace& place) {
   return shape;
 }
 
-/// A quantity: as it is. Words: their position, -1 for NaN.
+/// Accesses a number of a method: a quantity as it is, a word as its position, with -1 for NaN.
 template <class T>
 RowAccess<AssessmentRecord, T> access_of(const NumberPlace& place) {
   const Eigen::Index first = place.first, size = place.size();
@@ -509,7 +511,7 @@ Row<AssessmentRecord> number_row(const NumberPlace& place) {
                                                   : "");
 }
 
-/// The numbers of one method, which stands at place `method` of the assessments.
+/// The numbers of one method, which is at position `method` among the assessments.
 RecordTable method_table(const AssessmentForm& form, std::size_t method) {
   RecordTable table{.group = "methods/" + form.method().name,
                     .dimension = "experiment",
@@ -543,7 +545,7 @@ RecordTable kept_loops(const Study& study) {
   return table;
 }
 
-/// What only a simulation knows of kept loops.
+/// Signals of kept loops that only a simulation knows.
 RecordTable truth_of_loops(const Study& study) {
   const auto row = [&](const char* name, const char* meaning, Eigen::MatrixXd LoopTruth::*signal) {
     return signal_row<Record>(study, {name, meaning, "CV"}, "cv", path(&Record::truth, kContent, signal));
@@ -558,7 +560,7 @@ RecordTable truth_of_loops(const Study& study) {
                        &LoopTruth::y_d)}};
 }
 
-/// The loops with one of two faults alone.
+/// For experiments with two faults: the loops that have only one of them.
 RecordTable loops_alone(const Study& study) {
   RecordTable table{
       .group = "truth_alone",
@@ -567,7 +569,7 @@ RecordTable loops_alone(const Study& study) {
       .has = [](const Record& record) { return record.truth && record.truth->mpm_alone.y.size() > 0; },
       .make =
           [](Record& record) {
-            if (!record.truth)  // in an archive without the group of the others
+            if (!record.truth)  // the archive has no group `truth`
               record.truth.emplace();
           }};
   using Alone = LoopTruth::Alone;
@@ -601,7 +603,7 @@ RecordTable perturbed(const Study& study) {
                    &PerturbedIvar::damping)}};
 }
 
-// A member more in one of these and this does not compile: it is then to be added to a table above.
+// If one of these gets a new member, this does not compile: then add the member to a table above.
 [[maybe_unused]] void every_member_is_in_a_table(const Record& record, const AssessmentRecord& assessment,
                                                  const LoopRecord& loop, const LoopTruth& truth,
                                                  const SolverStatistics& statistics) {

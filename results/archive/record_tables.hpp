@@ -8,8 +8,8 @@
 #include "analysis/findings/study_findings.hpp"
 #include "base/row.hpp"
 
-// The one description of an experiment's record: each number of it is a row. The archive, the bytes of a
-// shard, the comparison of `replay` and the CSV tables iterate over them; a new number is one row more.
+// The only description of an experiment's record: each number of it is a row. The archive, the bytes of a
+// shard, the comparison of `replay` and the CSV tables iterate over these rows; a new number is one more row.
 
 namespace mpm {
 
@@ -20,8 +20,8 @@ struct RecordTable {
   std::string group;       ///< "methods/botelho"; empty: the root group
   std::string dimension;   ///< "experiment", "stored", "perturbed"
   std::string title;       ///< of the group; empty for the root group
-  bool from_draw = false;  ///< they follow from study and index, by which bytes draw the experiment anew
-  /// Which experiments stand in it, and how room is made in a record; empty: all of them.
+  bool from_draw = false;  ///< the rows follow from study and index; bytes leave them out
+  /// `has` tells which experiments are in the table (empty: all); `make` makes room for the rows in a record.
   std::function<bool(const ExperimentRecord&)> has = {};
   std::function<void(ExperimentRecord&)> make = {};
   std::vector<RecordRow> rows = {};
@@ -29,10 +29,11 @@ struct RecordTable {
   bool covers(const ExperimentRecord& record) const { return !has || has(record); }
 };
 
-/// All tables of the records of a study, in an order in which they can be put back.
+/// All tables of the records of a study, in an order in which their values can be read back into a record.
 std::vector<RecordTable> record_tables(const Study& study, const AssessmentForms& forms);
 
-/// The description of a number of a method in files, as `text`, with its value for loops without a verdict.
+/// Returns the description of a number of a method as files state it: `text` with the value that stands for a
+/// missing verdict.
 NumberText kept_text(NumberText text);
 
 }  // namespace mpm

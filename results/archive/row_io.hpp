@@ -13,7 +13,7 @@
 #include "results/archive/variable_text.hpp"
 #include "results/files/archive_error.hpp"
 
-// Rows of the owners in memory as variables of a group.
+// Writes rows of owners in memory as variables of a group, and reads them back.
 
 namespace mpm {
 
@@ -22,7 +22,8 @@ Attributes attributes(const Row<Owner>& row) {
   return attributes<T>(row.text, row.coordinates);
 }
 
-/// Writes the rows of all these owners. `along` is the dimension along them, or none when there is one owner.
+/// Writes the rows of all these owners. `along` is the dimension of the owners; it is empty for a single
+/// owner.
 template <class Owner>
 void store_rows(Hdf5Group& group, const std::vector<std::string>& along, const std::vector<Row<Owner>>& rows,
                 const std::vector<Owner>& owners) {
@@ -46,7 +47,7 @@ void store_rows(Hdf5Group& group, const std::vector<Row<Owner>>& rows, const Own
   store_rows(group, {}, rows, std::vector<Owner>{owner});
 }
 
-/// Throws ArchiveError when a value that is to have a word has none.
+/// Throws ArchiveError if a value that must have a word has none.
 template <class T>
 void require_words(const NumberText& text, const std::vector<T>& values, const std::string& file) {
   if (const T* const value = value_without_word(text, values))
@@ -54,7 +55,7 @@ void require_words(const NumberText& text, const std::vector<T>& values, const s
                                    text.words.front().value, text.words.back().value));
 }
 
-/// The reverse of store_rows(), of the rows that can be put back; `file` is for messages.
+/// The reverse of store_rows(), for the rows that can be read back; `file` is for messages.
 template <class Owner>
 void load_rows(const Hdf5Group& group, const std::vector<std::size_t>& along,
                const std::vector<Row<Owner>>& rows, std::vector<std::reference_wrapper<Owner>> owners,

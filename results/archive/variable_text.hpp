@@ -11,14 +11,14 @@
 
 namespace mpm {
 
-// What a file says about a number to people and programs.
+// What a file tells people and programs about a number.
 
-/// A word in the form of files: with '_' for blanks, which separate the words of an attribute.
+/// Returns a word as files store it: with '_' for blanks, because blanks separate the words of an attribute.
 std::string flag_word(std::string text);
 
-/// `long_name`, `units` and, where there are any, `comment`, `coordinates` (a variable with further ones,
-/// such as `time`), `flag_values` (of the type T of the variable, as the CF conventions want it) and
-/// `flag_meanings`.
+/// Returns the attributes of a variable: `long_name`, `units` and, if the variable has them, `comment`,
+/// `coordinates` (further coordinates, such as `time`), `flag_values` (of the variable's type T, as the CF
+/// conventions require) and `flag_meanings`.
 template <class T>
 Attributes attributes(const NumberText& text, const std::string& coordinates = {}) {
   Attributes list{{"long_name", text.meaning}, {"units", text.unit}};
@@ -41,7 +41,7 @@ Attributes attributes(const NumberText& text, const std::string& coordinates = {
   return list;
 }
 
-/// The first of these values that is to have a word and has none; null when there is none.
+/// Returns the first of these values that must have a word and has none; null if there is none.
 template <class T>
 const T* value_without_word(const NumberText& text, const std::vector<T>& values) {
   if constexpr (std::is_integral_v<T>)
@@ -51,16 +51,16 @@ const T* value_without_word(const NumberText& text, const std::vector<T>& values
   return nullptr;
 }
 
-/// The words behind -1 for "none".
+/// Returns `words` after the word `none` for -1.
 std::vector<NumberWord> with_none(std::vector<NumberWord> words, const char* none = "none");
-/// -1: none, then the position of each variable under its name.
+/// Returns "none" for -1, then the name of each variable for its position.
 std::vector<NumberWord> index_words(const std::vector<PlantModel::Variable>& variables);
 
-/// `unit` as an attribute: "1" for an empty one. Units of time get their symbols ("min" for "minutes"),
-/// because xarray turns a variable in "minutes" into time spans and loses its digits.
+/// Returns `unit` as an attribute: "1" if it is empty. Units of time become their symbols ("min" for
+/// "minutes"), because xarray would turn a variable in "minutes" into time spans and lose its digits.
 std::string unit_text(const std::string& unit);
-/// The unit that all these variables have; "various" when they have different ones. A dimension lists the
-/// unit of each variable in its attribute `variable_units`.
+/// Returns the unit that all these variables have, or "various" if they differ. A dimension lists the unit of
+/// each variable in its attribute `variable_units`.
 std::string common_unit(const std::vector<PlantModel::Variable>& variables);
 
 }  // namespace mpm
