@@ -27,7 +27,7 @@ Cell word(double flag) {
   return std::isnan(flag) ? Cell("-") : flag == 1.0 ? Cell("yes").toned(Cell::Tone::strong) : Cell("no");
 }
 
-/// What stays behind its count until a reader opens it.
+/// The warnings: the page shows their count and hides them until a reader opens the list.
 Section warnings_section(const RecordAssessment& of) {
   Section section{"warnings", "Look at these"};
   if (of.warnings.empty())
@@ -42,7 +42,7 @@ Section warnings_section(const RecordAssessment& of) {
   return section;
 }
 
-/// In the unit of the column, and as it was before the operating point was taken off.
+/// Converts values to the unit of the column and adds the operating point, as the file has them.
 std::vector<double> as_recorded(const RecordAssessment& of, const std::string& name,
                                 const Eigen::RowVectorXd& values) {
   const auto look = [&name](const DataOptions::Numbers& numbers, double fallback) {
@@ -54,10 +54,9 @@ std::vector<double> as_recorded(const RecordAssessment& of, const std::string& n
   return {columns.begin(), columns.end()};
 }
 
-/// Time with stamps instead of numbers, one at each whole number; what all stamps share at their end (":00")
-/// is left out.
+/// Returns a time axis with a stamp at each whole number. If all stamps end with ":00", that is left out.
 Axis stamps_axis(const std::vector<std::string>& stamps, int steps) {
-  constexpr double kRoom = 1.15;  // for the end of the last stamp
+  constexpr double kRoom = 1.15;  // space for the text of the last stamp
   Axis axis{.label = "", .lower = 0.0, .upper = kRoom * static_cast<double>(steps)};
   const bool to_the_minute = std::all_of(stamps.begin(), stamps.end(), [](const std::string& stamp) {
     return stamp.size() == 19 && stamp.ends_with(":00");
@@ -70,7 +69,7 @@ Axis stamps_axis(const std::vector<std::string>& stamps, int steps) {
   return axis;
 }
 
-/// What an engineer looks at first: the worst CV as it was measured, and what the model makes of the MVs.
+/// What an engineer looks at first: the worst CV as measured, and as the model simulates it from the MVs.
 Figure worst_figure(const RecordAssessment& of) {
   constexpr int kSteps = 2;
   constexpr double kHeight = 260;
@@ -92,7 +91,7 @@ Figure worst_figure(const RecordAssessment& of) {
     panel.upright_band(kSteps * static_cast<double>(of.verdict.model.since->sample) / last, kSteps);
   panel.line(time, as_recorded(of, variable.name, of.record.y.row(cv)), measured);
   Eigen::RowVectorXd y_sim = of.loop.y_sim.row(cv);
-  y_sim.head(of.unjudged).setConstant(kNaN);  // nobody knows what the MVs did before
+  y_sim.head(of.unjudged).setConstant(kNaN);  // not judged: the MVs before the record are not known
   panel.line(time, as_recorded(of, variable.name, y_sim), model);
   Figure figure;
   figure.name = "measured-and-model";
@@ -108,7 +107,7 @@ Figure worst_figure(const RecordAssessment& of) {
   return figure;
 }
 
-/// "gain x 1.6", "dead time +2 min": of a channel that is wrong.
+/// Describes the state of a channel; a wrong one as "wrong, gain x 1.6" or "wrong, dead time +2 min".
 Cell period_cell(const RecordAssessment& of, const ChannelPeriod& period) {
   if (period.state == ChannelState::good)
     return Cell("good").toned(Cell::Tone::good);
@@ -156,7 +155,7 @@ Section why_section(const AssessmentText& text) {
   return section;
 }
 
-/// A row a channel, a column a period.
+/// Table with one row per channel and one column per period.
 Section health_section(const RecordAssessment& of) {
   Section section{"health", "The channels over time"};
   if (of.health.empty())
@@ -183,10 +182,10 @@ Section health_section(const RecordAssessment& of) {
   return section;
 }
 
-/// The CV's answer to a step of the MV by the model, and by the corrected channel.
+/// Step responses of the channel that is repaired: in the model, and corrected.
 Figure step_figure(const RecordAssessment& of) {
   constexpr double kHeight = 220;
-  constexpr double kSettled = 1.5;  // times the settling time of the slower one
+  constexpr double kSettled = 1.5;  // times the longer settling time
   const Pen old{colour::kVermillion, Dash::dashed, Mark::none, 1.5};
   const Pen corrected{colour::kBlack, Dash::solid, Mark::none, 2.0};
   const ChannelRepair& repair = of.repair->repair;
@@ -216,7 +215,7 @@ Figure step_figure(const RecordAssessment& of) {
   return figure;
 }
 
-/// The score of each window, at its last sample.
+/// The score of each window, drawn at its last sample.
 Figure trend_figure(const RecordAssessment& of, const Eigen::RowVectorXd& scores) {
   constexpr double kHeight = 220;
   const Pen score{colour::kBlue, Dash::solid, Mark::dot, 1.5};
@@ -273,7 +272,7 @@ Section windows_section(const RecordAssessment& of) {
   return section;
 }
 
-/// What each method says, and how often it is right on simulated loops where there are some.
+/// What each method says and, if there are simulated loops, how often it is right on them.
 Section trust_section(const RecordAssessment& of) {
   Section section{"methods", "The methods"};
   Table table(of.trial ? fmt::format("Verdict of each method on this record, and its results on {} simulated "

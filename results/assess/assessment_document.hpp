@@ -5,7 +5,8 @@
 
 namespace mpm {
 
-/// The verdict, the cost, the answer of each method, and how far to trust them.
+/// Makes the document of an assessment: the verdict, the cost, the answer of each method, and how far to
+/// trust them.
 Document assessment_document(const RecordAssessment& assessment);
 
 }  // namespace mpm

@@ -66,7 +66,7 @@ Json trust_json(const TrialFindings& found) {
           {"same_source", rate_json(found.same_source)}};
 }
 
-/// The CVs that are late: null for all of them, a name, or several.
+/// The CVs that are late: null if all are, one name, or a list of names.
 Json late_json(const RecordAssessment& of) {
   Json names = Json::array();
   for (const Eigen::Index cv : of.verdict.model.late_cvs)
@@ -74,7 +74,7 @@ Json late_json(const RecordAssessment& of) {
   return names.empty() ? Json() : names.size() == 1 ? names.front() : names;
 }
 
-/// Of the simulated records of which the source of the verdict was named.
+/// Of the simulated records for which the same source was named as in the verdict: the share named rightly.
 Json same_source_json(const RecordAssessment& of) {
   const TrialCounts& counts = of.trial->counts;
   return rate_json(rate(counts.right, counts.same, of.study.aggregate.confidence));
@@ -104,7 +104,7 @@ Json number_or_null(double value) {
   return std::isnan(value) ? Json() : Json(value);
 }
 
-/// Of each source; null without simulated records.
+/// The probability of each source; null if there are no simulated records.
 Json probabilities_json(const std::optional<OfSources>& probabilities) {
   if (!probabilities)
     return {};
@@ -183,7 +183,7 @@ Json promise_json(const RecordAssessment& of) {
   return json;
 }
 
-/// Numbers of the MVs; null where there is none.
+/// One number per MV; null if it is NaN.
 Json of_mvs(const Study& study, const Eigen::VectorXd& numbers) {
   Json json = Json::object();
   for (Eigen::Index mv = 0; mv < numbers.size(); ++mv)

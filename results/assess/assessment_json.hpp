@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// assessment_document() for programs.
+/// Returns the content of assessment_document() as JSON for other programs.
 std::string assessment_json(const RecordAssessment& assessment);
 
 }  // namespace mpm

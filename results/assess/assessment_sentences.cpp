@@ -21,7 +21,7 @@ std::string share_text(const Rate& rate) {
                      100.0 * rate.interval.upper);
 }
 
-/// The signals that a method names as inputs which the model lacks.
+/// Names the signals that methods name as inputs missing in the model.
 void add_candidates(const RecordAssessment& of, Texts& sentences) {
   Texts named;
   for (const AssessmentRecord& said : of.said)
@@ -34,11 +34,12 @@ void add_candidates(const RecordAssessment& of, Texts& sentences) {
         fmt::format("Signals outside of the model that drive its errors: {}.", fmt::join(named, ", ")));
 }
 
-/// What the record tells of the channel that the verdict names, and which other one is worth a repair.
+/// Says what the record tells about the channel that the verdict names, and which other channel is worth a
+/// repair.
 void add_repair(const RecordAssessment& of, Texts& sentences) {
   if (!of.no_repair.empty())
     sentences.push_back(fmt::format("The gain of a repair is not known: {}.", of.no_repair));
-  if (of.repair && !of.repair->repair.parameter)  // of one parameter the verdict has the size
+  if (of.repair && !of.repair->repair.parameter)  // for one parameter the verdict has the size
     sentences.push_back(fmt::format("Identified again from this record, {} has {}.",
                                     channel_name(of.study, of.repair->repair.channel),
                                     correction_text(of.study, of.repair->repair)));
@@ -91,7 +92,7 @@ void add_trust(const RecordAssessment& of, Texts& sentences) {
         "This source was named in none of them, so it is not known how often it is right.");
 }
 
-/// By what the controller that ran may differ.
+/// Says in what respect the controller that ran may differ.
 std::string difference_sentence(const RecordAssessment& of) {
   const ControllerCheck& check = of.controller;
   if (!check.away.empty()) {

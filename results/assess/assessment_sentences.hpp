@@ -11,43 +11,44 @@
 #include "results/assess/record_verdict_text.hpp"
 #include "scenarios/study/study.hpp"
 
-// The assessment of a record of a plant, sentence by sentence.
+// The assessment of a plant record, sentence by sentence.
 
 namespace mpm {
 
-/// The verdict in sentences, and the notes beside it.
+/// The verdict in sentences, and the notes to it.
 struct AssessmentText {
   RecordVerdictText verdict;
-  std::vector<std::string> further = {};  ///< of controller and candidates
-  std::vector<std::string> trust = {};    ///< how far to trust it
-  std::vector<std::string> repair = {};   ///< evidence of the record on the channel, and on others
+  std::vector<std::string> further = {};  ///< on the controller and the candidates
+  std::vector<std::string> trust = {};    ///< how far to trust the verdict
+  std::vector<std::string> repair = {};   ///< what the record tells about repairs of this and other channels
 };
 
 AssessmentText assessment_text(const RecordAssessment& assessment);
-/// All of them, in their order.
+/// Returns the verdict, the notes on controller and candidates, and how far to trust it, in this order.
 std::vector<std::string> verdict_sentences(const RecordAssessment& assessment);
-/// The verdict for a mail: at most ten lines.
+/// Returns the verdict for an e-mail: at most ten lines.
 std::string brief_text(const RecordAssessment& assessment);
-/// Is the controller of the study the one that ran? Empty: it is.
+/// Says how the controller of the study differs from the one that ran; empty if it is the same.
 std::vector<std::string> controller_sentences(const RecordAssessment& assessment);
-/// The MV whose valve sticks, if one does, by an answer that was asked for it; otherwise empty.
+/// Returns the MV whose valve sticks, according to a method that names valves; empty if it names none.
 std::string stuck_mv(const Study& study, const AssessmentRecord& said);
-/// "MPM", "valve of u2", "-" for none: a source that the answer names.
+/// Returns words for a source that the answer names: "MPM", "valve of u2", or "-" for none.
 std::string source_words(const Study& study, const AssessmentRecord& said, FaultSource source);
-/// The CVs that the repair of the verdict worsens by one of its predictions; there must be a repair.
+/// Returns the CVs that the repair of the verdict would worsen according to any of its predictions. There
+/// must be a repair.
 std::vector<std::string> worsened_by_repair(const RecordAssessment& assessment);
 
-/// Number `row` of the answer under this name; NaN when the method has no such number.
+/// Returns number `row` of the answer with this name; NaN if the method has no such number.
 double number_of_cv(const AssessmentRecord& said, std::string_view name, Eigen::Index row);
-/// What the method says is wrong with a CV that it flags; none of a CV that it does not, or when it does not
-/// tell.
+/// Returns what the method says is wrong with a CV that it flags; `none` if it does not flag the CV, or names
+/// no source.
 FaultSource source_of_cv(const AssessmentRecord& said, Eigen::Index cv);
-/// The MVs whose channels to a CV the method names.
+/// Returns the MVs whose channels to a CV the method names.
 std::vector<std::string> named_mvs(const Study& study, const AssessmentRecord& said, Eigen::Index cv);
-/// The logged signal that the method names for a CV that it flags; empty for none.
+/// Returns the logged signal that the method names for a CV that it flags; empty if it names none.
 std::string named_candidate(const RecordAssessment& assessment, const AssessmentRecord& said,
                             Eigen::Index cv);
-/// First and last stamp of a window of the study.
+/// Returns the first and last stamp of a window of the study.
 std::string window_text(const RecordAssessment& assessment, int window);
 
 }  // namespace mpm

@@ -15,25 +15,26 @@
 #include "results/archive/campaign.hpp"
 #include "solvers/qp_solver.hpp"
 
-// The repairs that methods ask for in the experiments of a campaign, and what they come to.
+// The repairs that methods ask for in the experiments of a campaign, and their results.
 
 namespace mpm {
 
-/// What is repaired in an experiment: one channel, or the one that the answer of a method names.
+/// The channel to repair in an experiment: a given one, or the one that the answer of a method names.
 struct ChannelChoice {
   std::optional<Channel> asked;
-  std::size_t method = 0;  ///< place in the assessments of a record; where no channel is asked for
+  std::size_t method = 0;  ///< position in the assessments of a record; used if no channel is given
 
-  /// The record ran to its end, and there is a channel to repair. Of a changed tuning the model is not to be
-  /// repaired.
+  /// Tells whether the record ran to its end and there is a channel to repair. If the tuning was changed, the
+  /// model needs no repair.
   bool names(const ExperimentRecord& record) const;
 };
 
-/// The channel "CV/MV". Throws InputError("--channel") for another name.
+/// Chooses the channel "CV/MV". Throws InputError("--channel") if there is no such channel.
 ChannelChoice choice_of_channel(const Study& study, const std::string& name);
 
-/// The method; empty: the first of the campaign that names mismatches or, where none does, channels. Throws
-/// InputError("--method") for one that names neither.
+/// Chooses the method `name`. If `name` is empty, chooses the first method of the campaign that names
+/// mismatches or, if none does, the first that names channels. Throws InputError("--method") if the method
+/// names neither.
 ChannelChoice choice_of_method(const Campaign& campaign, const std::string& name);
 
 /// The repair of one experiment.
@@ -41,39 +42,40 @@ struct ExperimentRepair {
   ExperimentDraw draw;
   RepairedLoop loop;
   ChannelInformation told;
-  std::vector<RepairProspect> prospects = {};  ///< of all channels, ranked(); of one experiment in full
+  std::vector<RepairProspect> prospects = {};  ///< ranked(), of all channels; only in repairs_of_experiment()
 
-  /// The CVs that would vary more with it, by the record alone (worsened_cvs()).
+  /// Returns the CVs that would vary more with the repair, according to the record alone (worsened_cvs()).
   std::vector<std::string> worsened(const Study& study) const;
 };
 
-/// An experiment in full: its channels by what their repair promises, and the repair that is chosen.
+/// One experiment in full: all channels ranked by what their repair promises, and the chosen repair.
 struct RepairsOfExperiment {
   std::optional<ExperimentRepair> chosen;  ///< none: the method names no channel
   std::vector<RepairProspect> prospects;   ///< ranked()
 };
 
-/// Repairs the chosen channel of the record; none: the method names no channel in it. Throws InputError as
+/// Repairs the chosen channel of the record; none if the method names no channel in it. Throws InputError as
 /// fit_channel().
 std::optional<ExperimentRepair> experiment_repair(const Campaign& campaign, const ExperimentRecord& record,
                                                   const ChannelChoice& choice,
                                                   const QpSolverFactory& factory);
 
-/// The same with all channels ranked.
+/// Repairs the chosen channel and ranks all channels.
 RepairsOfExperiment repairs_of_experiment(const Campaign& campaign, const ExperimentRecord& record,
                                           const ChannelChoice& choice, const QpSolverFactory& factory);
 
-/// Findings over the repairs whose loops compare.
+/// Summarises the repairs whose loops can be compared.
 std::vector<RepairFindings> repair_findings(std::span<const ExperimentRepair> repairs, double confidence);
 
-/// Throws InputError(`archive`) for a campaign whose controller runs on no model: a repaired model is judged
-/// by the loops that it promises.
+/// Throws InputError(`archive`) if the controller of the campaign cannot run on its model: a repaired model
+/// is judged by the loops that it promises.
 void require_repairable(const Campaign& campaign, const std::string& archive);
 
-/// A repair in full, of `now`, `predicted`, `repaired` and `perfect` (RepairedLoop).
+/// Describes a repair in full, with the variances `now`, `predicted`, `repaired` and `perfect`
+/// (RepairedLoop).
 std::string repair_text(const Study& study, const ExperimentRepair& repair);
 nlohmann::ordered_json repair_json(const Study& study, const ExperimentRepair& repair);
-/// Of an experiment without a repair: its index and kind.
+/// Returns index and kind of an experiment, also of one without a repair.
 nlohmann::ordered_json repair_heading_json(const ExperimentDraw& draw);
 
 std::string repair_findings_text(const std::vector<RepairFindings>& findings);

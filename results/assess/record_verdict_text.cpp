@@ -18,7 +18,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-/// A probability in whole percent; none is 0 or 100 %.
+/// Formats a probability in whole percent, but never as 0 or 100 %.
 std::string whole_percent_text(int permille) {
   return permille > 990  ? "more than 99 %"
          : permille < 10 ? "less than 1 %"
@@ -68,7 +68,7 @@ class VerdictWriter {
     return names;
   }
 
-  /// What the source is, of a model that fails.
+  /// Says what the source is if the model fails.
   std::string what() const {
     const RecordVerdict::Model& model = verdict_.model;
     const std::string at = cv(model.at.front().cv);
@@ -130,7 +130,7 @@ class VerdictWriter {
     return fmt::format("{} {} too {} against all MVs", who, by, model.late < 0.0 ? "early" : "late");
   }
 
-  /// "Most likely (84 %)"; where it is likelier that nothing is wrong, of the faults.
+  /// "Most likely (84 %)", or "Likeliest of the faults (30 %)" if something else is more likely.
   std::string sure() const {
     const RecordVerdict::Model& model = verdict_.model;
     if (!model.probabilities)
@@ -438,7 +438,7 @@ std::string mismatch_sentence(const Study& study, const NamedMismatch& named) {
 
 std::pair<std::string, std::string> told_apart(double a, double b) {
   constexpr int kFewest = 3, kMost = 17;
-  constexpr double kPlain = 1000.0;  // from here on all digits before the point
+  constexpr double kPlain = 1000.0;  // from here on, all digits before the decimal point
   const auto text = [](double number, int digits) {
     return std::abs(number) < kPlain || !std::isfinite(number)
                ? fmt::format("{:.{}g}", number, digits)
@@ -456,7 +456,7 @@ std::array<int, kRecordSources> permille(const OfSources& probabilities) {
   std::array<int, kRecordSources> shares{};
   for (std::size_t place = 0; place < kRecordSources; ++place)
     shares[place] = std::max(1, static_cast<int>(std::lround(kWhole * probabilities.each[place])));
-  // What rounding leaves falls on the largest.
+  // The largest share takes the remainder of the rounding.
   *std::max_element(shares.begin(), shares.end()) +=
       kWhole - std::accumulate(shares.begin(), shares.end(), 0);
   return shares;

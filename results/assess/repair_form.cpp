@@ -30,7 +30,7 @@ nlohmann::ordered_json fitted_json(const FittedNumber& number) {
           {"bound", to_string(number.bound)}};
 }
 
-/// Of the parameter that is corrected alone.
+/// Returns the size of the only parameter that is corrected.
 FittedNumber size_of(const ChannelRepair& repair) {
   if (repair.named)
     return {repair.named->size, repair.named->lower, repair.named->upper, repair.named->bound};
@@ -92,7 +92,7 @@ std::vector<std::string> worsened_cvs(const Study& study, const Eigen::VectorXd&
 }
 
 std::string information_sentence(const Study& study, const Channel& channel, const ChannelInformation& told) {
-  constexpr double kActAlike = 1000.0;  // condition: a column is known from the others to 3 %
+  constexpr double kActAlike = 1000.0;  // condition at which the others give a column to 3 %
   const std::string name = channel_name(study, channel);
   const std::string measured =
       fmt::format("rank {} of {}, condition {:.2g}", told.rank, told.parameters, told.condition);
