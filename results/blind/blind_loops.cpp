@@ -46,7 +46,7 @@ void append_number(std::string& text, double value) {
     fmt::format_to(std::back_inserter(text), ",{}", value);
 }
 
-/// One row a sample; `loop` stands in front where there are several.
+/// Appends one line per sample, each beginning with `number` (empty if there is only one loop).
 void append_samples(std::string& text, const Study& study, const AssessedLoop& loop,
                     const std::string& number) {
   for (Eigen::Index k = 0; k < loop.samples(); ++k) {
@@ -68,7 +68,7 @@ std::string heading_of_samples(const Study& study, bool with_candidates, const c
   return text + "\n";
 }
 
-/// The next one, missing throughout when it did not run to its end.
+/// Returns the next loop; if it did not run to its end, all its values are missing.
 AssessedLoop next_loop(const BlindLoops::Next& next, const Study& study) {
   AssessedLoop loop = next();
   if (loop.samples() == 0)
@@ -98,7 +98,8 @@ std::string benchmark_csv(const Study& study, const AssessedLoop& benchmark) {
   return text;
 }
 
-/// A form to fill in, with all columns that there can be for a whole loop; `windows` of each loop follow it.
+/// Returns a form to fill in, with all columns that a verdict on a whole loop can have. After the line of
+/// each loop follow the lines of its `windows`.
 std::string empty_verdicts(std::size_t loops, std::optional<int> windows, const std::string& hash) {
   std::string text =
       fmt::format("{}loop,{}flagged,score,cv,source,channels,parameter,size,lower,upper,error\n",
@@ -118,7 +119,7 @@ Row<AssessedLoop> row_of(const Study& study, const LoopSignal& signal) {
       .along("time");
 }
 
-/// All signals side by side, so that each loop is read once.
+/// Writes all signals in one pass, so that each loop is read once.
 void write_loops(Hdf5Group& group, const Study& study, const BlindLoops& loops) {
   std::vector<std::pair<const LoopSignal*, Hdf5Rows<double>>> all;
   for (const LoopSignal& signal : loop_signals())

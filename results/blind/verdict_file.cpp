@@ -34,7 +34,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLongestReason = 2000;  // bytes of an `error`
 
-// How programs and spreadsheets of several languages write a flag; capitals do not matter.
+// How programs and spreadsheets of several languages write a flag. Capitals do not matter.
 constexpr std::array kYes{"1", "true", "yes", "wahr", "vrai", "verdadero", "vero", "waar"};
 constexpr std::array kNo{"0", "false", "no", "falsch", "faux", "falso", "onwaar"};
 
@@ -55,10 +55,10 @@ std::vector<std::string> known_columns(const PlantModel& plant) {
   return columns;
 }
 
-/// One line of the file: its fields that are not empty, by their columns.
+/// One line of the file: its non-empty fields by column.
 struct VerdictLine {
   std::string place;           ///< "FILE:LINE"
-  bool decimal_comma = false;  ///< a number may have one
+  bool decimal_comma = false;  ///< numbers may have a decimal comma
   std::map<std::string, std::string> fields;
 
   const std::string* find(const std::string& column) const {
@@ -79,7 +79,7 @@ struct VerdictText {
   bool has(std::string_view column) const {
     return std::find(columns.begin(), columns.end(), column) != columns.end();
   }
-  /// Some line says something in a column that begins so.
+  /// Tells whether any line has a value in a column whose name begins with `begin`.
   bool uses(std::string_view begin) const {
     return std::any_of(lines.begin(), lines.end(), [&](const VerdictLine& line) {
       const auto first = line.fields.lower_bound(std::string(begin));
@@ -103,7 +103,7 @@ void take_heading(VerdictText& text, std::vector<std::string> columns, const std
         "at least loop and flagged in the heading line");
 }
 
-/// The hash of the loops in a comment; a spreadsheet may have put separators behind it.
+/// Returns the hash of the loops in a comment; a spreadsheet may have appended separators.
 std::optional<std::string> hash_in(const std::string& comment) {
   const std::string line = hash_line("");
   const std::string begin = line.substr(0, line.find_last_not_of(" \n") + 1);
@@ -138,7 +138,7 @@ VerdictText read_verdict_text(const std::filesystem::path& path, const PlantMode
   return text;
 }
 
-/// A number as it stands, or with the decimal comma that such a file may have.
+/// Reads a number, also one with a decimal comma if the file may have it.
 std::optional<double> number_in(const VerdictLine& line, std::string text) {
   if (line.decimal_comma && std::count(text.begin(), text.end(), ',') == 1)
     std::replace(text.begin(), text.end(), ',', '.');
@@ -147,7 +147,8 @@ std::optional<double> number_in(const VerdictLine& line, std::string text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-/// A whole number from 0 on, also with a decimal point, as programs write one that could be missing.
+/// Reads a whole number from 0 on, also one with a decimal point: programs write columns with missing values
+/// so.
 std::optional<std::size_t> whole_number_in(const VerdictLine& line, const std::string& text) {
   constexpr double kLargest = 1e15;
   const std::optional<double> value = number_in(line, text);
@@ -188,7 +189,7 @@ Json text_json(const VerdictLine& line, const std::string& column) {
   return field == nullptr ? Json() : Json(*field);
 }
 
-/// "y1/u2 y3/u1"
+/// Reads channels: "y1/u2 y3/u1".
 Json channels_json(const VerdictLine& line) {
   Json channels = Json::array();
   const std::string* const field = line.find("channels");
@@ -212,7 +213,7 @@ Json candidate_json(const VerdictLine& line) {
   return static_cast<std::int64_t>(*number);
 }
 
-/// The answer that a program would give instead of this line.
+/// Returns the answer that a method program would give in place of this line.
 Json answer_json(const VerdictLine& line, const PlantModel& plant, const MethodDescription& method) {
   if (const std::string* const error = line.find("error"))
     return {{"error", cut_utf8(*error, kLongestReason)}};
@@ -281,13 +282,14 @@ MethodDescription description_of(const VerdictText& text, const std::string& nam
   return method;
 }
 
-/// What a file says about one loop: a line on it as a whole, and lines on its windows; null: none.
+/// What a file says about one loop: a line on the whole loop, and lines on its windows; null: there is no
+/// line.
 struct LoopLines {
   const VerdictLine* whole = nullptr;
   std::vector<const VerdictLine*> windows = {};
 };
 
-/// The number in a column, below `count`, which is above 0.
+/// Returns the number in a column; it must be below `count`, which must be above 0.
 std::size_t place_in(const VerdictLine& line, const std::string& column, std::size_t count) {
   const std::string* const field = line.find(column);
   const std::optional<std::size_t> place = field ? whole_number_in(line, *field) : std::nullopt;
@@ -298,7 +300,7 @@ std::size_t place_in(const VerdictLine& line, const std::string& column, std::si
   return *place;
 }
 
-/// The lines by the loop that they are of.
+/// Sorts the lines by the loops that they are about.
 std::vector<LoopLines> by_loop(const VerdictText& text, std::size_t loops, std::size_t windows) {
   std::vector<LoopLines> lines(loops);
   for (const VerdictLine& line : text.lines) {
@@ -318,7 +320,7 @@ std::vector<LoopLines> by_loop(const VerdictText& text, std::size_t loops, std::
   return lines;
 }
 
-/// Reads the lines on one loop.
+/// Reads the lines about one loop.
 class LoopVerdicts {
  public:
   LoopVerdicts(std::shared_ptr<const AssessmentForm> form, const PlantModel& plant, int candidates)
@@ -350,7 +352,7 @@ class LoopVerdicts {
   int candidates_;
 };
 
-/// Are calibration loops among those that the file is of? Refuses verdicts on the loops of another archive.
+/// Tells whether the file is also about calibration loops. Refuses verdicts on the loops of another archive.
 bool has_calibration(const VerdictText& text, const Campaign& campaign, const std::string& file) {
   if (!text.hash || *text.hash == loops_hash(campaign, false))
     return false;
