@@ -16,24 +16,25 @@
 #include "base/non_finite.hpp"
 #include "results/plot/figure.hpp"
 
-// The content of a result, once: sections of sentences, tables of typed cells, and figures. The writers make
-// of it a text for a terminal (document_text.hpp), a page (document_html.hpp), Markdown
+// The content of a result, stated once: sections of sentences, tables of typed cells, and figures. The
+// writers turn it into text for a terminal (document_text.hpp), a page (document_html.hpp), Markdown
 // (document_markdown.hpp) and JSON (document_json.hpp).
 //
 // Words are labels (results/plot/plot_text.hpp: `_{...}` is a subscript, foreign text goes through
-// as_label()), with further marks that these functions make. A terminal shows the words alone.
+// as_label()) with further marks, which the functions below add. A terminal shows the words without the
+// marks.
 
 namespace mpm {
 
 std::string strong(std::string_view words);
-/// Foreign text that a reader may type: a command, a key, a file.
+/// Marks foreign text that a reader may type: a command, a key, a file.
 std::string code(std::string_view text);
-/// `target`: an anchor of the page.
+/// Links words to `target`, an anchor of the page.
 std::string link(std::string_view target, std::string_view words);
 
-/// "A", "A and B", "A, B and C"; empty for none.
+/// Joins words: "A", "A and B", "A, B and C"; empty if there are none.
 std::string in_a_row(const std::vector<std::string>& words);
-/// "A, B, C": the names as foreign text, or `none` where there are none.
+/// Lists names as foreign text: "A, B, C", or `none` if there are no names.
 std::string listed(const std::vector<std::string>& names, std::string_view none = "");
 
 enum class NumberForm {
@@ -58,13 +59,13 @@ inline Number fixed(double value, const Interval& interval = {kNaN, kNaN}) {
 inline Number share(double value) {
   return {value, NumberForm::share};
 }
-/// " (94.5 to 98.5)": in a sentence, behind the number; empty where the interval does not exist.
+/// The interval for a sentence, after its number: " (94.5 to 98.5)"; empty if there is no interval.
 std::string interval_words(const Interval& interval, int decimals);
-/// "97.1 % (94.5 to 98.5)": in a sentence; of no loops a dash.
+/// A rate for a sentence: "97.1 % (94.5 to 98.5)"; a dash if it counts no loops.
 std::string share_words(const Rate& rate);
-/// A rate without loops is a dash.
+/// A rate as a number; a dash if it counts no loops.
 Number number(const Rate& rate, NumberForm form = NumberForm::share);
-/// With the number of its loops.
+/// The same with the number of loops or experiments behind it.
 Number number_of(const Rate& rate, NumberForm form = NumberForm::share);
 Number number_of(const Estimate& estimate, NumberForm form = NumberForm::digits);
 
@@ -76,26 +77,27 @@ struct Cell {
       : content(std::move(words)) {}               // NOLINT(google-explicit-constructor): rows are lists
   Cell(const char* words) : content(words) {}      // NOLINT(google-explicit-constructor)
   Cell(const Number& number) : content(number) {}  // NOLINT(google-explicit-constructor)
-  /// A count.
+  /// An integer count.
   template <std::integral Count>
   Cell(Count count) : content(fmt::to_string(count)) {}  // NOLINT(google-explicit-constructor)
 
-  Cell&& with(std::string words) &&;  ///< a note
+  Cell&& with(std::string words) &&;  ///< adds a note
   Cell&& toned(Tone as) &&;
 
-  std::variant<std::string, Number> content;  ///< words; empty ones are nothing
+  std::variant<std::string, Number> content;  ///< words or a number; empty words show nothing
   std::string hover = {};                     ///< text that a page shows when the mouse rests on it
-  std::string mark = {};                      ///< right behind the content
-  std::string note = {};                      ///< words: small and below on a page; a text has no room for it
+  std::string mark = {};                      ///< shown right after the content
+  std::string note = {};                      ///< words: small and below on a page; left out of a text
   Tone tone = Tone::plain;
-  double ground = kNaN;      ///< 0 to 1: how deep the colour is on which a page shows it; NaN: none
-  bool low_is_good = false;  ///< another colour
+  double ground = kNaN;      ///< depth of the background colour on a page, 0 to 1; NaN: none
+  bool low_is_good = false;  ///< uses another background colour
 };
 
-/// Where something is shown. full: on a page, and in a text that is asked for in full.
+/// Where something is shown. `full`: on a page, and in a text for which everything was asked.
 enum class Shown { everywhere, page, text, full };
 
-/// Cells in rows under named columns. A text has the columns that fit side by side, and the others below.
+/// Cells in rows under named columns. In a text, columns that do not fit side by side follow below the
+/// others.
 struct Table {
   enum class Align { left, right, text };  ///< text: left, and wide enough for a sentence
   struct Column {
@@ -106,7 +108,7 @@ struct Table {
   struct Row {
     std::vector<Cell>
         cells;  ///< the first is the heading of its row; fewer than columns leave the last ones empty
-    std::string anchor = {};  ///< by which links find the row; empty: none
+    std::string anchor = {};  ///< name by which links find the row; empty: none
     bool is_group = false;    ///< its only cell is a heading across all columns
   };
 
@@ -121,7 +123,7 @@ struct Table {
   std::string caption;  ///< words
   std::vector<Column> columns;
   std::vector<Row> rows = {};
-  bool wraps = false;  ///< a page may break its cells between words: many columns have to fit on a screen
+  bool wraps = false;  ///< a page may break cells between words, so that many columns fit
 };
 
 /// Words in a paragraph of their own.
@@ -132,16 +134,16 @@ struct Paragraph {
   Kind kind = Kind::plain;
 };
 
-/// Sentences, each with a point before it.
+/// A list of sentences, each after a bullet.
 struct Sentences {
   std::vector<std::string> words;
 };
 
-/// Names with a description of each.
+/// Names, each with a description.
 struct Facts {
   struct Fact {
     std::string name, words;
-    std::string note;  ///< words: small and below on a page, behind the others in a text
+    std::string note;  ///< words: small and below on a page, after the others in a text
   };
 
   void add(std::string name, std::string words, std::string note = {}) {
@@ -151,21 +153,21 @@ struct Facts {
   std::vector<Fact> list = {};
 };
 
-/// A piece of a page that a text leaves out.
+/// A piece of a page, which a text leaves out.
 struct Html {
   std::string text;
 };
 
-/// What is said about one question, in the order of reading.
+/// What the document says about one question, in reading order.
 struct Section {
   std::string id;  ///< its anchor
   std::string title;
   std::vector<std::variant<Html, Paragraph, Sentences, Facts, Table, Figure>> content = {};
   std::string answer = {};                ///< words: a sentence below the title
-  std::vector<Figure> file_figures = {};  ///< drawn into files only: the page shows a table in their place
+  std::vector<Figure> file_figures = {};  ///< drawn into files only; the page shows a table in their place
   Shown shown = Shown::everywhere;
-  /// Adds what programs read of the section to the object of the document, with every number that people see
-  /// and those for which a text has no room. Called when JSON is written; empty: nothing.
+  /// Adds the data of the section to the JSON object of the document: every number that people see, and those
+  /// for which a text has no room. Called when JSON is written; empty: adds nothing.
   std::function<void(nlohmann::ordered_json&)> data = {};
 
   void add(std::string html) { content.emplace_back(Html{std::move(html)}); }
@@ -177,20 +179,20 @@ struct Section {
   void say(std::string words, Paragraph::Kind kind = Paragraph::Kind::plain) {
     content.emplace_back(Paragraph{std::move(words), kind});
   }
-  /// In place of a content for which there are no data: one sentence that says why.
+  /// Adds one sentence that says why content is missing, in place of content without data.
   void leave_out(const std::string& why);
 };
 
 /// A result as a whole.
 struct Document {
-  std::string title = {};    ///< of the window, after "mpmbench: ": text
-  std::string heading = {};  ///< words, as those below
-  std::string lead = {};     ///< below it
-  std::string footer = {};   ///< of the page
-  std::string version = {};  ///< of the program that made the numbers: text
+  std::string title = {};    ///< text: title of the window, after "mpmbench: "
+  std::string heading = {};  ///< words, as are `lead` and `footer`
+  std::string lead = {};     ///< below the heading
+  std::string footer = {};   ///< at the end of the page
+  std::string version = {};  ///< text: version of the program that made the numbers
   std::vector<Section> sections = {};
   std::string lead_html = {};   ///< content of the page below the lead
-  std::string aside_html = {};  ///< beside the body where there is room, below it elsewhere
+  std::string aside_html = {};  ///< beside the body if there is room, else below it
 };
 
 }  // namespace mpm

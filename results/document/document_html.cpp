@@ -59,7 +59,7 @@ std::string cell_html(const Cell& cell) {
   }
   if (!cell.note.empty())
     html += fmt::format("{}<small>{}</small>", html.empty() ? "" : "<br>", words_html(cell.note));
-  constexpr double kDeepest = 0.55;  // black text stays readable
+  constexpr double kDeepest = 0.55;  // black text stays readable on it
   return std::isnan(cell.ground)
              ? html
              : fmt::format(

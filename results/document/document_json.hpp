@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// What the sections of the document have for programs, as one object. A number that does not exist or is
-/// infinite is null.
+/// Returns the data of all sections of the document as one JSON object. A number that is missing or infinite
+/// is null.
 std::string document_json(const Document& document);
 
 }  // namespace mpm

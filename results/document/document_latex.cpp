@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-/// In two lines, broken at the space next to its middle, so that the table fits a page:
+/// Breaks a heading into two lines at the space nearest to its middle, so that the table fits a page:
 /// "\shortstack[r]{Healthy,\\calibrated}"
 std::string heading_latex(const std::string& heading) {
   std::size_t best = std::string::npos;
@@ -45,7 +45,7 @@ std::string number_latex(const Number& number) {
   return text(number.value) + (std::isnan(lower) ? "" : fmt::format(" ({}--{})", text(lower), text(upper)));
 }
 
-/// Raised, as a note of the table's comment explains it.
+/// Returns a mark as superscript. A note in the comment of the table explains it.
 std::string mark_latex(std::string_view mark) {
   std::string text;
   for (const char each : mark)

@@ -18,7 +18,8 @@ bool is_letter_or_digit(char c) {
          static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// Words that mean themselves. A '_' within a word and a '*' by itself do so without a '\\'.
+/// Escapes words, so that Markdown shows them as they are. A '_' within a word and a '*' by itself need no
+/// '\\'.
 std::string words_markdown(std::string_view words) {
   const std::string text = shown_text(words_text(words));
   std::string escaped;

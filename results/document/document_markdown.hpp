@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// Tables, paragraphs and sentences of the document as Markdown, an empty line between them. Shares are in
-/// percent and say no more than that, their intervals in whole percent.
+/// Writes the tables, paragraphs and sentences of the document as Markdown, with an empty line between them.
+/// Shares are in percent but without the sign, their intervals in whole percent.
 std::string document_markdown(const Document& document);
 
 }  // namespace mpm

@@ -37,7 +37,7 @@ std::string cell_text(const Cell& cell) {
 
 using TextRows = std::vector<std::vector<std::string>>;
 
-/// Characters, not bytes.
+/// Returns the width in characters, not bytes.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::count_if(
       text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
@@ -55,7 +55,7 @@ std::string blanks(std::size_t width, const std::string& text) {
   return std::string(width - std::min(width, width_of(text)), ' ');
 }
 
-/// The first column and those of [first, last), a line a row.
+/// Writes the first column and those of [first, last), one line per row.
 std::string block_text(const Table& table, const TextRows& rows, const std::vector<std::size_t>& widths,
                        std::size_t first, std::size_t last) {
   std::string text;
@@ -71,7 +71,7 @@ std::string block_text(const Table& table, const TextRows& rows, const std::vect
   return text;
 }
 
-/// The table without what is for a page only.
+/// Returns the table without columns that only a page shows.
 Table of_text(Table table) {
   for (std::size_t i = table.columns.size(); i-- > 0;) {
     if (table.columns[i].shown != Shown::page)
@@ -158,7 +158,7 @@ std::string table_text(const Table& whole, std::size_t width) {
   std::string text = table.caption.empty() ? "" : paragraph_text(table.caption, width);
   std::size_t first = std::min<std::size_t>(1, columns), last = first;
   do {
-    std::size_t sum = std::min(widths.front(), width / 2);  // a wider one leaves the other columns together
+    std::size_t sum = std::min(widths.front(), width / 2);  // a wider one must not split the other columns
     for (; last < columns; ++last) {
       sum += 2 + widths[last];
       if (sum > width && last > first && table.columns[last].align != Table::Align::text)

@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// A figure for a page: legend, panels, caption. Errors: GnuplotError.
+/// Writes a figure for a page: legend, panels, caption. Errors: GnuplotError.
 std::string figure_html(const Figure& figure);
 
 }  // namespace mpm

@@ -4,12 +4,12 @@
 
 namespace mpm {
 
-/// What a page does beyond showing (page_script.js): tables that sort and filter, points that lead to their
-/// experiment, the nearest one of a touch since points are smaller than fingers, and a dark page on request.
-/// A page without it is complete.
+/// The script of a page (page_script.js). It sorts and filters tables, leads from points to their experiments
+/// (a touch selects the nearest point, because points are smaller than fingers), and shows a dark page on
+/// request. A page is complete without it.
 extern const char* const kPageScript;
 
-/// The source of the policy that allows this script and no other: 'sha256-...'.
+/// Returns the source expression of a policy that allows only this script: 'sha256-...'.
 std::string page_script_policy();
 
 }  // namespace mpm

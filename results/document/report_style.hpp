@@ -2,8 +2,8 @@
 
 namespace mpm {
 
-/// The style sheet of the report (report_style.css): one column of text, panels two abreast where there is
-/// room, tables that scroll by themselves on a narrow screen, and a print form.
+/// The style sheet of the report (report_style.css): one column of text, two panels side by side if there is
+/// room, tables that scroll by themselves on a narrow screen, and a form for print.
 extern const char* const kReportStyle;
 
 }  // namespace mpm
