@@ -23,7 +23,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::string_view kExtension = ".tmp";  // after the number of the process
+constexpr std::string_view kExtension = ".tmp";  // after the process number
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* action) {
   const std::error_code error(errno, std::generic_category());
@@ -45,19 +45,19 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : ".";
 }
 
-constexpr int kMostLinks = 40;  // as the kernel has it
+constexpr int kMostLinks = 40;  // the limit of the kernel
 
-/// The link itself, which leads to nothing else, where a path is none.
+/// Returns where a link leads, or the path itself if it is no link.
 std::filesystem::path next_link(const std::filesystem::path& path) {
-  std::error_code error;  // what cannot be looked at is no link
+  std::error_code error;  // a path that cannot be looked at counts as no link
   const std::filesystem::path target = std::filesystem::read_symlink(path, error);
   return error ? path : path.parent_path() / target;
 }
 
-/// The number of the open file of this process that a path stands for, as /dev/stdout does; none for other
-/// paths.
+/// Returns the number of the open file of this process that a path stands for, as /dev/stdout does; none for
+/// other paths.
 std::optional<int> open_file_of(std::filesystem::path path) {
-  std::error_code error;  // without /proc no path stands for one
+  std::error_code error;  // without /proc no path stands for an open file
   const std::filesystem::path open_files = std::filesystem::canonical("/proc/self/fd", error);
   for (int links = 0; !error && links < kMostLinks; ++links) {
     const std::string name = path.filename().string();
@@ -77,8 +77,8 @@ bool is_locked_by_its_writer(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) != 0;
 }
 
-/// A file that is open for writing, and is removed again unless it is renamed. It is locked meanwhile: one
-/// that is not was left by a process that was killed.
+/// A file that is open for writing and is removed at the end unless it was renamed. It is locked meanwhile:
+/// an unlocked one was left by a process that was killed.
 class TemporaryFile {
  public:
   TemporaryFile(const std::filesystem::path& target)
@@ -113,14 +113,15 @@ class TemporaryFile {
   }
 
  private:
-  /// Whether the file is ours: somebody who clears up may have removed it before it was locked.
+  /// Returns false if the file is gone: another process that cleans up may have removed it before it was
+  /// locked.
   bool make_and_lock() {
-    constexpr mode_t kAnybody = 0666;  // less the umask, as for any new file
+    constexpr mode_t kAnybody = 0666;  // minus the umask, as for any new file
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, kAnybody);
     if (descriptor_ < 0)
       fail(target_, "create a temporary file beside it");
     struct stat status {};
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // a file system that knows no locks does without
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // fails harmlessly where there are no locks
     if (::fstat(descriptor_, &status) == 0 && status.st_nlink == 0) {
       ::close(std::exchange(descriptor_, -1));
       return false;
@@ -134,7 +135,7 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-/// Whether `name` is one that TemporaryFile gives for the target of this name.
+/// Tells whether `name` is a name that TemporaryFile gives to a file for `target`.
 bool is_temporary_name(std::string_view name, std::string_view target) {
   if (!name.starts_with(target) || !name.ends_with(kExtension) ||
       name.size() < target.size() + kExtension.size())
@@ -145,8 +146,8 @@ bool is_temporary_name(std::string_view name, std::string_view target) {
          process.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
-/// Makes the rename itself last. The file is complete by now, so that nothing is lost when a file system
-/// cannot do this.
+/// Makes the rename itself permanent. The file is complete by now, so nothing is lost if a file system cannot
+/// do this.
 void flush_folder(const std::filesystem::path& file) {
   const int descriptor = ::open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0)
@@ -168,7 +169,7 @@ void write_text_atomically(const std::filesystem::path& path,
 }
 
 std::filesystem::path link_target(std::filesystem::path path) {
-  std::error_code error;  // what cannot be looked at is no link
+  std::error_code error;  // a path that cannot be looked at counts as no link
   for (int links = 0; std::filesystem::is_symlink(path, error); ++links) {
     errno = ELOOP;
     if (links == kMostLinks)
@@ -180,7 +181,7 @@ std::filesystem::path link_target(std::filesystem::path path) {
 
 void remove_abandoned_files(const std::filesystem::path& target) {
   std::vector<std::filesystem::path> temporary;
-  std::error_code error;  // what cannot be listed or removed stays
+  std::error_code error;  // files that cannot be listed or removed stay
   for (const auto& entry : std::filesystem::directory_iterator(folder_of(target), error))
     if (is_temporary_name(entry.path().filename().string(), target.filename().string()) &&
         entry.is_regular_file(error))
@@ -196,7 +197,7 @@ void remove_abandoned_files(const std::filesystem::path& target) {
 }
 
 bool is_stream(const std::filesystem::path& path) {
-  std::error_code error;  // what cannot be looked at is none
+  std::error_code error;  // a path that cannot be looked at is no stream
   const auto status = std::filesystem::status(path, error);
   return std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status) ||
          open_file_of(path).has_value();
@@ -207,7 +208,7 @@ namespace {
 template <class Write>
 void write_atomically(const std::filesystem::path& path, const Write& write) {
   const std::filesystem::path target = link_target(path);
-  std::error_code error;  // what cannot be looked at cannot be written either, which is said below
+  std::error_code error;  // not needed: a path that cannot be looked at fails below
   if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error))
     throw ArchiveError(
         fmt::format("{}: cannot be replaced: it is a {}, not a regular file", path.string(),
@@ -232,7 +233,7 @@ void write_file_atomically(const std::filesystem::path& path,
 }
 
 void write_through(const std::filesystem::path& path, std::span<const std::byte> content) {
-  // A file that is open is not opened again: that would write over its beginning.
+  // A file that is already open is not opened again: that would overwrite its beginning.
   const std::optional<int> number = open_file_of(path);
   const int descriptor =
       number ? ::fcntl(*number, F_DUPFD_CLOEXEC, 0) : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);

@@ -10,9 +10,9 @@
 
 #include <Eigen/Core>
 
-// Values as bytes, for the way between a process and its workers: both are the same program on the same
-// machine, so every number keeps its bits. One list of members serves both directions: transfer(stream,
-// value) writes a const value to a ByteWriter or reads one from a ByteReader.
+// Values as bytes that a process and its workers exchange. Both are the same program on the same machine, so
+// every number keeps its bits. One list of members serves both directions: transfer(stream, value) writes a
+// const value to a ByteWriter or reads a value from a ByteReader.
 
 namespace mpm {
 
@@ -25,7 +25,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Throws std::runtime_error when the bytes do not suffice.
+/// Throws std::runtime_error if there are too few bytes.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -37,7 +37,7 @@ class ByteReader {
     bytes_.remove_prefix(size);
   }
   std::size_t left() const { return bytes_.size(); }
-  /// Throws std::runtime_error when bytes are left over.
+  /// Throws std::runtime_error if bytes are left over.
   void require_end() const {
     if (!bytes_.empty())
       throw std::runtime_error("message between processes: too many bytes");
@@ -51,7 +51,7 @@ template <class Stream, class Value>
 requires std::is_arithmetic_v<std::remove_const_t<Value>> || std::is_enum_v<std::remove_const_t<Value>>
 void transfer(Stream& stream, Value& value) {
   if constexpr (std::is_same_v<Stream, ByteReader> && std::is_same_v<Value, bool>) {
-    unsigned char byte = 0;  // a bool made of another byte than 0 and 1 is undefined behaviour
+    unsigned char byte = 0;  // a bool from a byte other than 0 or 1 is undefined
     stream.block(&byte, sizeof byte);
     if (byte > 1)
       throw std::runtime_error("message between processes: a flag that is neither 0 nor 1");
@@ -80,7 +80,7 @@ void transfer(Stream& stream, Matrix& matrix) {
   Eigen::Index shape[2] = {matrix.rows(), matrix.cols()};
   stream.block(shape, sizeof shape);
   if constexpr (!std::is_const_v<Matrix>) {
-    using Plain = std::remove_const_t<Matrix>;  // a fixed size is not checked by resize() without assertions
+    using Plain = std::remove_const_t<Matrix>;  // without assertions, resize() does not check a fixed size
     if ((Plain::RowsAtCompileTime >= 0 && shape[0] != Plain::RowsAtCompileTime) ||
         (Plain::ColsAtCompileTime >= 0 && shape[1] != Plain::ColsAtCompileTime))
       throw std::runtime_error("message between processes: a matrix of another shape");
@@ -93,13 +93,13 @@ void transfer(Stream& stream, Matrix& matrix) {
   stream.block(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double));
 }
 
-/// A list of `members(element)`.
+/// Transfers the size of a list, and each element by `members(element)`.
 template <class Stream, class List, class Members>
 void transfer_list(Stream& stream, List& list, const Members& members) {
   std::size_t size = list.size();
   transfer(stream, size);
   if constexpr (!std::is_const_v<List>) {
-    if (size > stream.left())  // each element has a byte at least
+    if (size > stream.left())  // each element has at least one byte
       throw std::runtime_error("message between processes: a list that does not fit");
     list.resize(size);
   }
@@ -107,7 +107,7 @@ void transfer_list(Stream& stream, List& list, const Members& members) {
     members(element);
 }
 
-/// Whether there is a value, and then `members(value)`.
+/// Transfers whether there is a value and, if so, the value by `members(value)`.
 template <class Stream, class Optional, class Members>
 void transfer_optional(Stream& stream, Optional& value, const Members& members) {
   bool present = value.has_value();
@@ -120,7 +120,7 @@ void transfer_optional(Stream& stream, Optional& value, const Members& members) 
     members(*value);
 }
 
-/// All `values`, one after the other.
+/// Transfers all `values`, one after the other.
 template <class Stream, class... Values>
 void transfer_all(Stream& stream, Values&... values) {
   (transfer(stream, values), ...);

@@ -23,7 +23,7 @@ void refuse_bytes(std::string_view text, const std::string& file) {
         "a CSV file in UTF-8, UTF-16 or ASCII: export it again, or save the sheet as \"CSV UTF-8\"");
 }
 
-/// The sign that a spreadsheet names in the first line.
+/// Returns the separator that a spreadsheet names in the first line, if it does.
 std::optional<char> named_separator(std::string_view line) {
   line = without_blanks(line);
   if (line.size() == 7 && line.front() == '"' && line.back() == '"')
@@ -32,7 +32,7 @@ std::optional<char> named_separator(std::string_view line) {
   return named ? std::optional(line.back()) : std::nullopt;
 }
 
-/// The one that the heading has most often.
+/// Returns the separator that occurs most often in the heading.
 char found_separator(std::string_view heading) {
   const auto count = [&](char c) { return std::count(heading.begin(), heading.end(), c); };
   return *std::max_element(kSeparators.begin(), kSeparators.end(),
@@ -56,7 +56,7 @@ std::string CsvReader::place() const {
   return fmt::format("{}:{}", file_, line_);
 }
 
-/// The next line that is neither empty nor a comment.
+/// Finds the next line that is neither empty nor skipped nor a comment.
 bool CsvReader::next_line(std::string_view& line) {
   while (at_ < text_.size()) {
     const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
@@ -78,7 +78,7 @@ std::vector<std::string> CsvReader::fields_of(std::string_view line) const {
   std::vector<std::string> fields;
   for (std::size_t at = 0; at <= line.size();) {
     std::string field;
-    std::size_t first = at;  // of the field, without the blanks before it
+    std::size_t first = at;  // start of the field after the blanks before it
     while (first < line.size() && (line[first] == ' ' || line[first] == '\t') && line[first] != separator_)
       ++first;
     if (first < line.size() && line[first] == '"' && line[first] != separator_) {

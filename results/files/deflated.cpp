@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-/// zlib makes a text no longer than this many times what it is packed in.
+/// zlib expands compressed bytes at most by this factor.
 constexpr std::uint64_t kLargestRatio = 1040;
 
 const Bytef* zlib_bytes(std::string_view text) {
@@ -30,7 +30,7 @@ std::string deflated(std::string_view content) {
   std::memcpy(bytes.data(), &size, sizeof size);
   if (compress2(zlib_bytes(bytes, sizeof size), &packed, zlib_bytes(content), content.size(), Z_BEST_SPEED) !=
       Z_OK)
-    throw std::bad_alloc();  // its only error where the room suffices
+    throw std::bad_alloc();  // the only possible error, as there is enough room
   bytes.resize(sizeof size + packed);
   return bytes;
 }

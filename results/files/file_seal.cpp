@@ -42,7 +42,7 @@ class InputFile {
   std::size_t size() const { return size_; }
   [[noreturn]] void refuse(const char* why) const { throw ArchiveError(fmt::format("{}: {}", name_, why)); }
 
-  /// `length` bytes from `begin` on, or as many as there are.
+  /// Reads `length` bytes from `begin` on, or as many as there are.
   template <class Bytes>
   Bytes read(std::size_t begin, std::size_t length) {
     Bytes bytes(std::min(length, size_ - std::min(begin, size_)), typename Bytes::value_type{});
@@ -59,7 +59,7 @@ class InputFile {
   std::ifstream file_;
 };
 
-/// Of the first `size` bytes of the file.
+/// Returns the SHA-256 of the first `size` bytes of the file.
 std::string sha256_of(InputFile& file, std::size_t size) {
   constexpr std::size_t kPiece = std::size_t{1} << 20;
   Sha256 hash;
@@ -76,7 +76,7 @@ constexpr const char* kDamaged =
     "the file is damaged: its SHA-256 differs from the one at its end; restore a copy, or run the study "
     "again";
 
-/// The hash in the seal at the end of the file.
+/// Returns the hash in the seal at the end of the file. Refuses a file without one.
 std::string read_seal(InputFile& file) {
   const std::size_t begin = file.size() - std::min(file.size(), kSealBytes);
   const auto seal = file.read<std::string>(begin, kSealBytes);
@@ -109,7 +109,7 @@ std::optional<std::string_view> unsealed(std::string_view file) {
 
 std::vector<std::byte> read_sealed_file(const std::filesystem::path& path) {
   InputFile file(path);
-  const std::string hash = read_seal(file);  // first, because what has none may be longer than the memory
+  const std::string hash = read_seal(file);  // first: a file without a seal may be too large for the memory
   auto content = file.read<std::vector<std::byte>>(0, file.size() - kSealBytes);
   if (sha256(content) != hash)
     file.refuse(kDamaged);

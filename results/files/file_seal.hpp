@@ -9,33 +9,33 @@
 
 namespace mpm {
 
-/// The bytes that a seal takes at the end of a file: one line of text, the SHA-256 of all before it,
+/// The length of the seal at the end of a file: one line of text with the SHA-256 of all bytes before it,
 ///
 ///   "\nmpmbench sha256 " + 64 hexadecimal digits + "\n"
 ///
-/// HDF5 keeps the length of its data in the file and passes over what follows, so that all programs that read
-/// HDF5 read a sealed file too; a program that changes it cuts the seal off. The library itself notices
-/// damage in few places only, reads it as numbers in most, and crashes on some: hence the seal is checked
-/// before the library sees a byte.
+/// HDF5 stores the length of its data in the file and ignores whatever follows. So all programs that read
+/// HDF5 also read a sealed file; a program that changes the file cuts off the seal. The library itself
+/// notices damage in few places only: in most it reads the damage as numbers, and in some it crashes.
+/// Therefore the seal is checked before the library sees a byte.
 inline constexpr std::size_t kSealBytes = 82;
 
-/// `content` with its seal.
+/// Returns `content` with its seal.
 std::vector<std::byte> sealed(std::vector<std::byte> content);
 
-/// Puts the seal at the end of a file. Throws ArchiveError when it cannot be read or written.
+/// Appends the seal to a file. Throws ArchiveError if the file cannot be read or written.
 void seal_file(const std::filesystem::path& path);
 
-/// The content of a sealed file that was read as a whole, without the seal; none when it has no seal or the
-/// seal is that of another content.
+/// Returns the content of a sealed file that was read as a whole, without the seal; none if there is no seal
+/// or the seal belongs to another content.
 std::optional<std::string_view> unsealed(std::string_view file);
 
-/// The content of a sealed file, without the seal.
+/// Reads a sealed file and returns its content, without the seal.
 ///
-/// Errors: ArchiveError for a file that cannot be read, has no seal (it is cut off, was changed by another
+/// Errors: ArchiveError if the file cannot be read, has no seal (it is cut off, was changed by another
 /// program, comes from an early version, or is no archive at all), or differs from what was sealed.
 std::vector<std::byte> read_sealed_file(const std::filesystem::path& path);
 
-/// The same without its content: throws unless it is what was sealed.
+/// Checks the seal without returning the content; errors as read_sealed_file().
 void require_seal(const std::filesystem::path& path);
 
 }  // namespace mpm

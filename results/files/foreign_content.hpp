@@ -6,10 +6,10 @@
 
 namespace mpm {
 
-inline constexpr std::size_t kShownBytes = 60;  ///< of a text of somebody else in a message
+inline constexpr std::size_t kShownBytes = 60;  ///< longest part of a foreign text in a message
 
-/// The content of a file that somebody else has written, which goes to memory as a whole: at most 2 GB.
-/// Throws InputError with the path, what is in the way (see open_input()) or its size, and `allowed`.
+/// Returns the content of a file of another program. It is read into memory as a whole, so at most 2 GB.
+/// Throws InputError with the path, the obstacle (see open_input()) or the size, and `allowed`.
 std::string foreign_content(const std::filesystem::path& path, const std::string& allowed);
 
 }  // namespace mpm

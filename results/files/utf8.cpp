@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kReplacement = 0xFFFD;
 
-/// `text` as UTF-8 in which each code point that is not `allowed` is U+FFFD.
+/// Returns `text` as UTF-8, with U+FFFD for each code point that is not `allowed`.
 template <class Allowed>
 std::string replaced(std::string_view text, Allowed allowed) {
   std::string valid;

@@ -6,30 +6,30 @@
 
 namespace mpm {
 
-/// `text` as HDF5, netCDF and JSON take it: UTF-8 without NUL. Each sequence of bytes that is none of UTF-8,
-/// and each NUL, is replaced by U+FFFD; a proper text comes back as it is.
+/// Returns `text` as HDF5, netCDF and JSON accept it: UTF-8 without NUL. U+FFFD replaces each invalid
+/// sequence of bytes and each NUL. A proper text is returned unchanged.
 std::string proper_utf8(std::string_view text);
 
-/// `text` as XML 1.0 and a terminal take it: UTF-8 in which each control character (C0 and C1) but tab and
-/// line feed, and each of the non-characters U+FFFE and U+FFFF, is replaced by U+FFFD. No escape of XML can
-/// stand for these. So is what turns the direction of the text behind it (U+202A to U+202E, U+2066 to
-/// U+2069): a name could make the rest of a line read as something else.
+/// Returns `text` as XML 1.0 and terminals accept it, in UTF-8. U+FFFD replaces each control character (C0
+/// and C1) except tab and line feed, and the non-characters U+FFFE and U+FFFF, for which XML has no escape.
+/// U+FFFD also replaces the characters that turn the direction of the text after them (U+202A to U+202E,
+/// U+2066 to U+2069): a name with them could make the rest of a line read as something else.
 std::string plain_text(std::string_view text);
 
-/// Is it a text in UTF-16: with its byte order mark, or with a NUL as one of its first two bytes?
+/// Tells whether a text is in UTF-16: it has a byte order mark, or exactly one of its first two bytes is NUL.
 bool is_utf16(std::string_view bytes);
 
-/// A text in UTF-16 as UTF-8, without its byte order mark; without one the byte that is NUL tells the order.
-/// Halves of characters are replaced by U+FFFD, and so is a last odd byte.
+/// Converts a text from UTF-16 to UTF-8 and removes its byte order mark. Without a mark, the byte that is NUL
+/// tells the order. U+FFFD replaces halves of characters and an odd last byte.
 std::string utf8_of_utf16(std::string_view bytes);
 
-/// The same with small letters instead of the capitals of ASCII.
+/// Returns `text` with its ASCII capitals as small letters.
 std::string in_lower_case(std::string text);
 
-/// Without the blanks, tabs and carriage returns around it.
+/// Returns `text` without the blanks, tabs and carriage returns around it.
 std::string_view without_blanks(std::string_view text);
 
-/// The first `most` bytes of `text`, less what would be half a character of UTF-8.
+/// Returns the first `most` bytes of `text`, without a cut-off UTF-8 character at the end.
 std::string_view cut_utf8(std::string_view text, std::size_t most);
 
 }  // namespace mpm
