@@ -17,7 +17,7 @@
 namespace mpm {
 namespace {
 
-/// The methods of the run beside the others.
+/// Makes a board of the methods of the run, together with those of the finished board if there is one.
 JoinedBoard joined(const BoardRun& run, double confidence) {
   const FinishedBoard& board = run.board;
   if (run.finished)
@@ -25,7 +25,7 @@ JoinedBoard joined(const BoardRun& run, double confidence) {
   return {make_leaderboard(run.suite, board.methods, board.program, board.cells, confidence)};
 }
 
-/// "" over all loops, "FAMILY." of a family.
+/// Adds the scores of a method. `family` is "" for all loops, or "FAMILY." for one family.
 void add_scores(const std::string& method, const std::string& family, const PooledScores& scores,
                 std::vector<Finding>& findings) {
   for (const RateRow& row : rate_rows())
@@ -53,7 +53,8 @@ void add_standing(const Leaderboard& board, std::size_t method, std::vector<Find
       standing ? standing->lost() : kNaN);
 }
 
-/// A question of a baseline: the rate of which it is, whose hits are right answers or wrong ones.
+/// A question that a baseline is compared on. It belongs to a rate, whose hits are the right or the wrong
+/// answers.
 struct BoardQuestion {
   const char* name;
   std::string_view rate;
@@ -81,7 +82,7 @@ struct MethodLoops {
   }
 };
 
-/// The cells of two runs whose loops are the same ones.
+/// Cells of two runs that have the same loops.
 struct PairedCell {
   std::string name;
   const CellScores &before, &now;
@@ -106,7 +107,7 @@ std::vector<PairedCell> paired_cells(const BoardRun& run, const FinishedBoard& b
   return pairs;
 }
 
-/// One method of both runs; its places in them.
+/// Compares one method in both runs, where it has these positions.
 JudgementChanges changes_of(const std::vector<PairedCell>& cells, const BoardQuestion& question,
                             std::size_t place_before, std::size_t place_now) {
   JudgementChanges changes;
@@ -122,7 +123,7 @@ JudgementChanges changes_of(const std::vector<PairedCell>& cells, const BoardQue
           clusters + world);
       largest = std::max(largest, world);
     }
-    clusters += largest + 2;  // there may be a world -1, the exact one
+    clusters += largest + 2;  // world -1, the exact one, may occur
   }
   return changes;
 }
@@ -158,8 +159,8 @@ BaselineComparison compare_boards(const BoardRun& run, const FinishedBoard& base
   return comparison;
 }
 
-/// Of a method on all cells that were run. The reason is that of the first loop without a verdict in a cell
-/// with a failure.
+/// Counts the failures of a method on all cells that were run. The reason is that of the first loop without a
+/// verdict, in a cell with a failure.
 VerdictFailures failures_of(const FinishedBoard& board, std::size_t method) {
   VerdictFailures failures;
   for (const CellScores& cell : board.cells)
@@ -171,7 +172,7 @@ VerdictFailures failures_of(const FinishedBoard& board, std::size_t method) {
   return failures;
 }
 
-/// Methods that this program does not have.
+/// Judges the answers of the methods that this program does not have.
 void judge_outside_methods(const FinishedBoard& board, double minimum, std::vector<GateResult>& results) {
   for (std::size_t method = 0; method < board.methods.size(); ++method)
     if (!shipped_methods().has(board.methods[method]))
@@ -179,7 +180,7 @@ void judge_outside_methods(const FinishedBoard& board, double minimum, std::vect
         results.push_back(*std::move(answers));
 }
 
-/// Of the methods of the run.
+/// Returns the findings on the methods of the run.
 std::vector<Finding> board_findings(const BoardRun& run, const Leaderboard& board) {
   std::vector<Finding> findings;
   for (std::size_t method = 0; method < board.methods.size(); ++method) {

@@ -20,7 +20,8 @@
 namespace mpm {
 namespace {
 
-/// "METHOD.QUESTION", except for what a campaign was compared by before it had other methods.
+/// Names a question "METHOD.QUESTION", except for two that have kept names from before there were other
+/// methods.
 BaselineChanges baseline_changes(const Campaign& campaign, const MethodChange& method,
                                  const VerdictChange& verdict) {
   const std::string question = verdict.question->key;
@@ -173,7 +174,7 @@ GateCheck check_gates(const Campaign& campaign, const GateFile& file, const Camp
                 .confidence = study.aggregate.confidence,
                 .created = campaign.info.created,
                 .seconds = campaign.info.seconds};
-  // Without these a campaign could pass because the experiments that would have failed a gate are missing.
+  // Without these gates a campaign could pass because the experiments that would fail a gate are missing.
   run.results = {
       judge_number("self_check", "1: the basis case is healthy; otherwise no number is meaningful",
                    campaign.basis.healthy ? 1.0 : 0.0, 1, 1.0, kInfinity),

@@ -15,14 +15,14 @@
 
 namespace mpm {
 
-/// How the judgements of one question differ between a run and its baseline.
+/// How the judgements on one question differ between a run and its baseline.
 struct BaselineChanges {
-  std::string name;   ///< in the names of gates: "located", "METHOD.located"
+  std::string name;   ///< as in names of gates: "located", "METHOD.located"
   std::string title;  ///< for people: "source recognised"
   JudgementChanges changes;
-  /// McNemarTest::p_worse, corrected by Holm for the questions on which some verdict changed. A question on
-  /// which none did cannot fail, and does not count (Tarone 1990, "A modified Bonferroni method for discrete
-  /// data", Biometrics 46, 515-522).
+  /// McNemarTest::p_worse with the correction of Holm for all questions on which some verdict changed. A
+  /// question without a change cannot fail and does not count (Tarone 1990, "A modified Bonferroni method for
+  /// discrete data", Biometrics 46, 515-522).
   double p_worse = 1.0;
 
   bool changed() const { return !changes.lost.empty() || !changes.gained.empty(); }
@@ -32,18 +32,18 @@ struct BaselineChanges {
 struct BaselineComparison {
   std::string path;                             ///< of the baseline
   std::string run_by;                           ///< "mpmbench 1.0 (revision), solver auto"
-  std::vector<StudyDifference> edited;          ///< campaign_differences(); none of a suite
-  std::vector<std::string> not_compared = {};   ///< methods that only one of the two has
-  std::vector<BaselineChanges> questions = {};  ///< by correct_questions()
+  std::vector<StudyDifference> edited;          ///< campaign_differences(); empty for a suite
+  std::vector<std::string> not_compared = {};   ///< methods that only one of the two runs has
+  std::vector<BaselineChanges> questions = {};  ///< after correct_questions()
 
-  /// The changes that a gate on the baseline is about; null for any other gate.
+  /// Returns the changes that a gate on the baseline is about; null for any other gate.
   const BaselineChanges* of(const GateResult& result) const;
 };
 
 /// What the gates say about a run.
 struct GateCheck {
   std::string name;   ///< of the study or suite
-  std::string title;  ///< for people, in lines; empty: nothing to say
+  std::string title;  ///< for people, one or more lines; empty: nothing to say
   std::vector<std::pair<std::string, std::string>> properties;  ///< by whom and how it was run
   std::vector<GateResult> results =
       {};  ///< gates that every run has, then those of the file, then [baseline]
@@ -51,41 +51,41 @@ struct GateCheck {
   InconclusivePolicy inconclusive = InconclusivePolicy::fail;
   double confidence = 0.0;   ///< of the intervals
   std::string created = {};  ///< when it was run, ISO 8601, UTC; empty: not known
-  double seconds = kNaN;     ///< that the run took; NaN: not known
+  double seconds = kNaN;     ///< that the run took, in seconds; NaN: not known
 
-  /// Does this one stop the run? A failed one does, an inconclusive one under InconclusivePolicy::fail.
+  /// Tells whether a gate stops the run: if it failed, or is inconclusive under InconclusivePolicy::fail.
   bool stops(const GateResult& result) const;
   bool passed() const;
 };
 
-/// The findings that a gate can be put on: those that every run of this study has, without values; and those
-/// of this campaign, which has more where some loop gives them a value, such as `unstable`.
+/// Returns the findings that gates can be put on. For a study these are the findings of every run of it,
+/// without values. A campaign has further ones if some loop gives them a value, such as `unstable`.
 std::vector<Finding> gate_findings(const Study& study);
 std::vector<Finding> gate_findings(const Campaign& campaign);
 
-/// Sets BaselineChanges::p_worse of each.
+/// Sets BaselineChanges::p_worse of each question.
 std::vector<BaselineChanges> correct_questions(std::vector<BaselineChanges> questions);
 
-/// The gate `answered.METHOD` that no file names: a method from outside has answered at least the share
-/// `minimum` of the loops on which it was asked. None where it was asked on none.
+/// Judges the gate `answered.METHOD`, which no file names: a method from outside must have answered at least
+/// the share `minimum` of the loops on which it was asked. Returns none if it was asked on no loop.
 std::optional<GateResult> judge_answers(const std::string& method, const VerdictFailures& failures,
                                         double minimum);
 
-/// A gate that no file names, on a number of so many experiments.
+/// Judges a gate that no file names, on a number that rests on `count` experiments.
 GateResult judge_number(const std::string& name, const std::string& meaning, double value, std::int64_t count,
                         double minimum, double maximum);
 
-/// Judges the gates of the file, which are on these findings, and those of its baseline, after the `results`
-/// that are there.
+/// Judges the gates of the file, which refer to `findings`, and those of its baseline. Appends them to the
+/// results that `run` already has.
 GateCheck judge_gates(GateCheck run, const GateFile& file, const std::vector<Finding>& findings);
 
-/// Judges a campaign. Beside the gates of the file, every campaign has the gates `self_check` (the basis case
-/// is healthy), `experiments` (at least minimum_experiments), `failed` (at most maximum_failed), and
-/// `answered.METHOD` (judge_answers()) for each method with an origin. With [baseline], which `baseline` must
-/// then be, it also has, for each method of both and each of verdict_questions() that was judged,
-/// `baseline.METHOD.QUESTION.p_worse` (at least the significance) and `baseline.METHOD.QUESTION.lost` (at
-/// most maximum_lost). Two questions of the method that diagnoses have names from before there were others:
-/// `baseline.located` and `baseline.source_recognised`. Each run is judged by its own study.
+/// Judges a campaign. Besides the gates of the file, every campaign has the gates `self_check` (the basis
+/// case is healthy), `experiments` (at least minimum_experiments), `failed` (at most maximum_failed), and
+/// `answered.METHOD` (judge_answers()) for each method with an origin. If the file has [baseline], `baseline`
+/// must be that campaign. Then there are also, for each method of both and each of verdict_questions() that
+/// was judged, `baseline.METHOD.QUESTION.p_worse` (at least the significance) and
+/// `baseline.METHOD.QUESTION.lost` (at most maximum_lost). For the method that diagnoses, two questions keep
+/// older names: `baseline.located` and `baseline.source_recognised`. Each run is judged by its own study.
 ///
 /// Errors: InputError unless the baseline can be paired with the campaign (pair_runs()), has all of its
 /// experiments, and has a method in common with it.

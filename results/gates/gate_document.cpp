@@ -78,7 +78,7 @@ Json check_json(const GateCheck& check, const std::string& archive) {
   return json;
 }
 
-/// "17, 23", with the cells of a suite before the loops.
+/// Lists experiments: "17, 23"; for a suite, the cell comes before each loop.
 std::string experiments_text(const std::vector<JudgementPair>& pairs) {
   std::vector<std::string> names;
   for (const JudgementPair& pair : pairs)

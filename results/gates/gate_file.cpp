@@ -16,14 +16,14 @@ namespace {
 constexpr std::int64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
 constexpr std::size_t kMaxGates = kMaxCount;
 
-/// Limits of a share are shares: a limit of 95 on it was meant as a percentage, and no result would ever show
-/// that it is wrong.
+/// Limits on a share must be shares. A limit of 95 would be meant as a percentage, and no result would ever
+/// show that it is wrong.
 NumberRule limit_rule(const Finding& finding) {
   return finding.is_share() ? NumberRule::share() : NumberRule::finite();
 }
 
-/// A gate on a method that has not assessed the loops gets its own message: a list of other numbers would not
-/// help.
+/// Refuses a gate on a method that has not assessed the loops, with a message of its own: a list of other
+/// numbers would not help.
 void require_assessed(const TomlTable& table, const std::vector<Finding>& findings) {
   if (!table.has("aggregate"))
     return;
@@ -90,7 +90,7 @@ OptionKeys gate_keys(Gate& gate, const std::vector<Finding>& findings) {
 
 OptionKeys baseline_keys(BaselineLimits& limits, const std::filesystem::path& folder) {
   const auto read_archive = [&limits, folder](const TomlTable& table, const std::string& key) {
-    limits.archive = folder / read_text(table, key);  // an absolute path stands alone
+    limits.archive = folder / read_text(table, key);  // an absolute path stays as it is
   };
   const auto read_lost = [&limits](const TomlTable& table, const std::string& key) {
     limits.maximum_lost = read_whole(table, key, 0, kMaxCount);

@@ -18,12 +18,12 @@ void set_attribute(pugi::xml_node element, const char* name, const std::string& 
   element.append_attribute(name) = plain_text(value).c_str();
 }
 
-/// "0.000" of what is not known.
+/// Formats seconds; "0.000" if they are not known.
 std::string seconds_text(double seconds) {
   return fmt::format("{:.3f}", std::isfinite(seconds) ? seconds : 0.0);
 }
 
-/// "NAME", then "NAME (2)" of the next gate on the same number.
+/// Returns "NAME", and "NAME (2)" for the second gate on the same number.
 std::string case_name(const std::vector<GateResult>& results, const GateResult& result) {
   const auto before = std::count_if(
       results.data(), &result, [&](const GateResult& other) { return other.gate.name == result.gate.name; });

@@ -10,7 +10,8 @@
 namespace mpm {
 namespace {
 
-/// Digits that people compare: a tenth of a percent, four digits of anything else.
+/// Formats a number with the digits that people compare: a tenth of a percent for shares, otherwise four
+/// digits.
 std::string number_text(double value, bool share) {
   return share ? fmt::format("{:.1f}", 100.0 * value) : fmt::format("{:.4g}", value);
 }
@@ -26,7 +27,7 @@ std::string judged_text(const GateResult& result, double confidence) {
 }
 
 std::string distance_text(const GateResult& result) {
-  return margin_text(result).substr(1);  // without its sign
+  return margin_text(result).substr(1);  // without the sign
 }
 
 std::string outcome_sentence(const GateResult& result, double confidence) {

@@ -19,7 +19,7 @@ std::string changes_heading(const BaselineChanges& question) {
                      changes.test().p_worse, question.p_worse);
 }
 
-/// The keys that differ, a line each, and the methods that are in one of the two only.
+/// Lists the keys that differ, one per line, and the methods that only one of the two runs has.
 std::string edited_text(const BaselineComparison& baseline) {
   std::string text = baseline.edited.empty() ? "" : "changed since:\n";
   for (const StudyDifference& each : baseline.edited)
