@@ -8,7 +8,7 @@
 namespace mpm {
 
 /// The colours of Okabe and Ito (2008), which people with any colour vision can tell apart, and two greys for
-/// what stays in the background.
+/// the background.
 namespace colour {
 inline constexpr std::string_view kBlack = "#000000";
 inline constexpr std::string_view kOrange = "#E69F00";
@@ -30,15 +30,15 @@ enum class Mark {
   square,
   diamond,
   hollow_diamond
-};  ///< a circle is hollow, too
+};  ///< a circle is hollow as well
 
 /// How a series is drawn. Series differ in mark or dash as well as in colour.
 struct Pen {
   std::string_view colour = colour::kBlack;
   Dash dash = Dash::solid;
   Mark mark = Mark::none;
-  double width = 1.5;  ///< of the line, pixels
-  double size = 0.5;   ///< of the mark, in gnuplot's unit
+  double width = 1.5;  ///< width of the line, in pixels
+  double size = 0.5;   ///< size of the mark, in gnuplot's unit
 };
 
 /// What a pen stands for.
@@ -52,20 +52,20 @@ inline constexpr double kPanelWidth = 420;  ///< pixels; text is 12 pixels high
 /// One plot: made by PanelScript, drawn by draw_panels() and draw_figure().
 struct Panel {
   std::string title;                                ///< label
-  std::string description;                          ///< description for people who cannot see it
-  double height = 300, width = kPanelWidth;         ///< pixels; in a grid all are kPanelWidth wide
+  std::string description;                          ///< for people who cannot see the panel
+  double height = 300, width = kPanelWidth;         ///< pixels; in a grid, all panels are kPanelWidth wide
   std::string data;                                 ///< data blocks of gnuplot
-  std::string commands;                             ///< the plot itself, in gnuplot's language
-  std::map<std::string, std::string> names;         ///< of points, by their hypertext in `data`
-  std::map<std::string, std::string> anchors = {};  ///< where points of a page lead, in the same way
+  std::string commands;                             ///< the plot itself, as gnuplot commands
+  std::map<std::string, std::string> names;         ///< names of points, by their hypertext in `data`
+  std::map<std::string, std::string> anchors = {};  ///< where points of a page lead, by the same key
 };
 
-/// Panels that belong together. The page shows them one beside or below the other, as the screen allows; a
-/// file of its own has them in a grid.
+/// Panels that belong together. A page arranges them beside or below each other, as the screen allows; a file
+/// of its own has them in a grid.
 struct Figure {
-  std::string name;                  ///< of its file and its anchor: lower case, digits, hyphens
-  std::string caption;               ///< label; on the page, not in a file of its own
-  std::vector<std::string> heading;  ///< labels, lines above the grid in a file of its own
+  std::string name;                  ///< of the file and the anchor: lower case, digits, hyphens
+  std::string caption;               ///< label; shown on a page, not in a file of its own
+  std::vector<std::string> heading;  ///< labels: lines above the grid, in a file of its own
   std::vector<LegendEntry> legend;
   std::vector<Panel> panels;
   std::size_t columns = 2;  ///< of the grid

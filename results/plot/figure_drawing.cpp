@@ -19,9 +19,9 @@ namespace {
 
 constexpr double kLegendRow = 18;      // pixels
 constexpr double kHeadingRow = 18;     // pixels
-constexpr double kColumnInches = 3.5;  // of a two-column paper: one panel fills it, two fill the page
+constexpr double kColumnInches = 3.5;  // two-column paper: a panel fills one column, two the page
 
-/// What all plots have in common: two thin axes, a pale grid, no box.
+/// The common style of all plots: two thin axes, a pale grid, no box.
 constexpr const char* kHouseStyle = R"(reset
 set encoding utf8
 set minussign
@@ -43,8 +43,8 @@ std::string terminal(FigureFormat format, double width, double height) {
     case FigureFormat::svg:
       return fmt::format("set terminal svg size {},{} fixed enhanced font 'Arial,12' background '#FFFFFF'\n",
                          width, height);
-    case FigureFormat::pdf:  // a font of 12 pixels where a panel has kPanelWidth; looked at beside the other
-                             // two
+    case FigureFormat::pdf:  // the font has 12 pixels in a panel of kPanelWidth; judged by eye against the
+                             // other two formats
       return fmt::format(
           "set terminal pdfcairo size {}in,{}in enhanced font 'Arial,7.2' fontscale 0.75 linewidth 0.6 "
           "pointscale 0.8\n",
@@ -67,7 +67,7 @@ std::string legend_item(const LegendEntry& entry) {
   return "keyentry with " + words + " title " + gnuplot_label(entry.label);
 }
 
-/// How many rows gnuplot needs for the legend, about.
+/// Estimates how many rows gnuplot needs for the legend.
 double legend_rows(const std::vector<LegendEntry>& legend, double width) {
   constexpr double kSample = 50, kCharacter = 7;  // pixels
   std::size_t longest = 0;
@@ -78,7 +78,7 @@ double legend_rows(const std::vector<LegendEntry>& legend, double width) {
   return std::ceil(static_cast<double>(legend.size()) / columns);
 }
 
-/// The heading as a plot of its own that has nothing but labels.
+/// Writes the heading as a separate plot that holds only labels.
 std::string heading_script(const std::vector<std::string>& heading, double height) {
   std::string script =
       "unset border\nunset tics\nset margins 0, 0, 0, 0\nset xrange [0:1]\nset yrange [0:1]\n";
@@ -89,8 +89,8 @@ std::string heading_script(const std::vector<std::string>& heading, double heigh
   return script + "plot NaN notitle\n";
 }
 
-/// The legend as a plot of its own that has nothing but a key. Its rows are kLegendRow high: the terminal for
-/// SVG makes them 1.25 times as high as the others.
+/// Writes the legend as a separate plot that holds only a key. Its rows are kLegendRow high: the SVG terminal
+/// makes them 1.25 times as high as the other terminals do.
 std::string legend_script(const std::vector<LegendEntry>& legend, FigureFormat format) {
   std::vector<std::string> items;
   for (const LegendEntry& entry : legend)
@@ -102,7 +102,7 @@ std::string legend_script(const std::vector<LegendEntry>& legend, FigureFormat f
       legend.size(), format == FigureFormat::svg ? 1.0 : 1.25, fmt::join(items, ", "));
 }
 
-/// Where things stand in the grid of a figure, in pixels from the top.
+/// The positions of all parts of a figure in its grid, in pixels from the top.
 struct Layout {
   std::size_t columns;
   std::vector<double> row_heights;
@@ -165,7 +165,7 @@ std::string described(const Figure& figure) {
 }  // namespace
 
 std::vector<std::string> draw_panels(const Figure& figure) {
-  constexpr std::string_view kPrologue = "<?xml";  // of each drawing; their text has no '<'
+  constexpr std::string_view kPrologue = "<?xml";  // begins each drawing; the drawings' text has no '<'
   std::string script;
   for (const Panel& panel : figure.panels)
     script +=

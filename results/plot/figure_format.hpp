@@ -15,13 +15,13 @@ enum class FigureFormat { svg, pdf, png };
 template <>
 inline constexpr auto kWords<FigureFormat> = word_list("svg", "pdf", "png");
 
-/// Their names, for help texts and messages.
+/// The names of the formats, for help texts and messages.
 const std::vector<std::string>& figure_format_names();
 
-/// The format of this name. Throws InputError, which lists the known ones, for another.
+/// Returns the format of this name. Throws InputError, which lists the known names, if there is none.
 FigureFormat figure_format(const std::string& name);
 
-/// The format that the extension of this file stands for. Throws InputError as above.
+/// Returns the format that the extension of a file stands for. Throws InputError as above.
 FigureFormat figure_format_of(const std::filesystem::path& file);
 
 }  // namespace mpm

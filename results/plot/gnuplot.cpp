@@ -50,7 +50,7 @@ void write(const std::string& path, const std::string& text) {
     throw GnuplotError(fmt::format("{}: cannot write the script for gnuplot", path));
 }
 
-/// The files that a child process has as its standard streams.
+/// The files that serve a child process as its standard streams.
 class Redirection {
  public:
   Redirection(const std::string& out, const std::string& error) {
@@ -74,7 +74,7 @@ class Redirection {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// The environment without what gnuplot takes from the user: GNUTERM names a terminal that it may not have.
+/// Returns the environment without GNUTERM, in which a user names a terminal that this gnuplot may not have.
 std::vector<char*> plain_environment() {
   std::vector<char*> kept;
   for (char** variable = environ; *variable != nullptr; ++variable)
@@ -84,7 +84,7 @@ std::vector<char*> plain_environment() {
   return kept;
 }
 
-/// The wait status of a child, which is killed when it has not ended by then.
+/// Waits for the end of a child and returns its wait status. Kills it if it has not ended after `patience`.
 int end_of(pid_t child, const std::string& program, std::chrono::milliseconds patience) {
   constexpr std::chrono::milliseconds kLook(5);
   const auto until = std::chrono::steady_clock::now() + patience;
@@ -106,7 +106,7 @@ int end_of(pid_t child, const std::string& program, std::chrono::milliseconds pa
                                  std::chrono::duration<double>(patience).count()));
 }
 
-/// Starts the program and waits for its end; its wait status.
+/// Starts the program, waits for its end, and returns its wait status.
 int run(std::string program, std::string script, const Redirection& streams,
         std::chrono::milliseconds patience) {
   std::string defaults = "-d";
@@ -122,7 +122,7 @@ int run(std::string program, std::string script, const Redirection& streams,
   return end_of(child, program, patience);
 }
 
-/// What gnuplot says about its script, without the folder that is gone by the time somebody reads it.
+/// Returns what gnuplot says about its script, trimmed and cut to a readable length.
 std::string complaint(std::string text) {
   constexpr std::size_t kMost = 500;
   text.erase(text.find_last_not_of(" \n") + 1);

@@ -14,8 +14,8 @@
 namespace mpm {
 namespace {
 
-/// What the tics of the y axis and its label take beside a panel, in gnuplot's widths of a character, which
-/// are wider than letters are in the mean.
+/// Returns the space beside a panel for the tics and the label of the y axis. The unit is the width of a
+/// character in gnuplot, which is wider than an average letter.
 int left_margin(const Axis& y) {
   if (y.words.empty())
     return 10;
@@ -66,9 +66,9 @@ void PanelScript::plot(const std::string& item) {
   items_.push_back(item);
 }
 
-/// The places of a curve that a screen can show: all of them, and of more than kMostOnCurve, where x never
-/// falls, of each of a quarter as many stretches the first, the last, the lowest and the highest value, and
-/// one of each gap.
+/// Returns the points of a curve that a screen can show. These are all points if there are at most
+/// kMostOnCurve or if x falls anywhere. Otherwise the curve is cut into kMostOnCurve / 4 stretches; each
+/// keeps its first, last, lowest and highest point, and one point of each gap.
 std::vector<std::size_t> PanelScript::shown_places(const std::vector<double>& x,
                                                    const std::vector<double>& y) const {
   const std::size_t size = std::min(x.size(), y.size());
@@ -200,7 +200,7 @@ void PanelScript::upright_band(double lower, double upper) {
 }
 
 void PanelScript::field(double x, double y, std::string_view colour, double depth, const std::string& label) {
-  depth = std::isfinite(depth) ? std::clamp(depth, 0.0, 1.0) + 0.0 : 0.0;  // gnuplot knows no -0
+  depth = std::isfinite(depth) ? std::clamp(depth, 0.0, 1.0) + 0.0 : 0.0;  // gnuplot does not accept -0
   see(x_, x_extent_, x);
   see(y_, y_extent_, y);
   settings_ += fmt::format(
@@ -210,7 +210,7 @@ void PanelScript::field(double x, double y, std::string_view colour, double dept
 }
 
 Panel PanelScript::finish(std::string description, double height, double width) {
-  constexpr double kAround = 80;  // pixels that labels and title take, about
+  constexpr double kAround = 80;  // approximate pixels for labels and title
   panel_.title = title_;
   panel_.description = std::move(description);
   panel_.height = height;
@@ -223,7 +223,7 @@ Panel PanelScript::finish(std::string description, double height, double width) 
         fmt::format("set label 1 {} at graph 0, graph 1 offset 0, 0.9 left front\n", gnuplot_label(title_));
   panel_.commands += axis_commands('x', x_, x_extent_.least, x_extent_.largest, width - kAround) +
                      axis_commands('y', y_, y_extent_.least, y_extent_.largest, height - kAround) + settings_;
-  // Without anything to draw the axes alone stand there.
+  // If there is nothing to draw, the panel shows only its axes.
   panel_.commands +=
       items_.empty() ? "plot NaN notitle\n" : fmt::format("plot {}\n", fmt::join(items_, ", \\\n  "));
   return std::move(panel_);

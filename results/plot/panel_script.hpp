@@ -11,46 +11,48 @@
 
 namespace mpm {
 
-/// A point that says what it is when a mouse rests on it, and on a page leads to where more is said about it.
+/// A point that shows its name when the mouse rests on it. On a page it can link to details.
 struct NamedPoint {
   double x, y;
   std::string name;
-  std::string anchor = {};  ///< of an element of the page; empty: it leads nowhere
+  std::string anchor = {};  ///< of an element of the page; empty: no link
 };
 
-/// A value with an interval, at the place `at` of the other axis.
+/// A value with an interval, at position `at` on the other axis.
 struct Whisker {
   double at, value, lower, upper;
   std::string name;
 };
 
-inline constexpr std::size_t kMostPoints = 4000;   ///< of one series
-inline constexpr std::size_t kMostOnCurve = 1600;  ///< four to a pixel of a panel, about
+inline constexpr std::size_t kMostPoints = 4000;   ///< of one series of points
+inline constexpr std::size_t kMostOnCurve = 1600;  ///< of one curve: about four to a pixel
 
-/// Writes the script of one panel. What is drawn later lies on top. Points that an axis cannot show (not
-/// finite, or not positive on a logarithmic axis) are left out of points and interrupt lines.
+/// Writes the script of one panel. Later drawings lie on top of earlier ones. Points that an axis cannot show
+/// (not finite, or not positive on a logarithmic axis) are left out of points and interrupt lines.
 class PanelScript {
  public:
-  /// `name` is unique within a figure: letters, digits and underscores, a letter first.
+  /// `name` must be unique within a figure: letters, digits and underscores, a letter first.
   PanelScript(std::string name, std::string title, Axis x, Axis y);
 
-  /// For a curve with more than kMostOnCurve points, such as three weeks of minutes, only those are drawn
-  /// that make what a screen shows: the extremes of each stretch.
+  /// Draws a curve. If it has more than kMostOnCurve points, such as three weeks of minutes, only those are
+  /// drawn that a screen can show: the extremes of each stretch.
   void line(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
-  /// A line that keeps the value y[k] from x[k] to x[k + 1].
+  /// Draws a line that keeps the value y[k] from x[k] to x[k + 1].
   void steps(const std::vector<double>& x, const std::vector<double>& y, const Pen& pen);
-  /// With more than kMostPoints points, every n-th is drawn, so that a page of a large study stays readable.
+  /// Draws points. Of more than kMostPoints points only every n-th is drawn, so that a page of a large study
+  /// stays readable.
   void points(const std::vector<NamedPoint>& points, const Pen& pen);
-  /// Values at x = at with upright intervals.
+  /// Draws values at x = at with vertical intervals.
   void upright_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) { draw(whiskers, pen, false); }
-  /// Values at y = at with intervals along x.
+  /// Draws values at y = at with horizontal intervals.
   void level_whiskers(const std::vector<Whisker>& whiskers, const Pen& pen) { draw(whiskers, pen, true); }
-  /// A line across the panel at this y, or at this x.
+  /// Draws a line across the whole panel, at this y or at this x.
   void across(double y, const Pen& pen);
   void upright(double x, const Pen& pen);
-  /// A light band behind everything between two values of x.
+  /// Draws a light band between two values of x, behind everything else.
   void upright_band(double lower, double upper);
-  /// The field of a heat map around (x, y), one wide and high, with a label; `depth` from 0 (white) to 1.
+  /// Draws one field of a heat map, centred at (x, y), of width and height 1, with a label. `depth` is from 0
+  /// (white) to 1.
   void field(double x, double y, std::string_view colour, double depth, const std::string& label);
 
   Panel finish(std::string description, double height = 300, double width = kPanelWidth);
@@ -81,7 +83,7 @@ class PanelScript {
   Panel panel_;
 };
 
-/// A pen in gnuplot's words: for lines, for marks, and the mark without its colour.
+/// Pens in gnuplot's words: as a line, as a mark, and as a mark without its colour.
 std::string line_words(const Pen& pen);
 std::string mark_words(const Pen& pen);
 std::string mark_form(const Pen& pen);

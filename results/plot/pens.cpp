@@ -12,7 +12,7 @@ constexpr std::array<std::string_view, 7> kColours{colour::kBlue, colour::kOrang
                                                    colour::kBlack};
 constexpr std::array<Dash, 3> kDashes{Dash::solid, Dash::dashed, Dash::dotted};
 
-/// Of the methods, in their order; neighbours differ in dash as well.
+/// The pens of the first methods, in their order. Neighbours also differ in dash.
 constexpr std::array<Pen, 7> kMethodPens{{
     {colour::kBlue, Dash::solid, Mark::dot, 2.0, 0.8},
     {colour::kVermillion, Dash::dashed, Mark::square, 2.0, 0.8},
@@ -23,8 +23,8 @@ constexpr std::array<Pen, 7> kMethodPens{{
     {colour::kBlack, Dash::dashed, Mark::circle, 1.5, 0.8},
 }};
 
-/// Of the methods behind these. Chosen one after the other, each as far as possible from all before it and
-/// from white (differences in CIELAB, also as people with deuteranopia or protanopia see them).
+/// The colours of the methods after these. They were chosen one by one, each as far as possible from all
+/// before it and from white (differences in CIELAB, also as people with deuteranopia or protanopia see them).
 constexpr std::array<std::string_view, 14> kMoreColours{"#001E96", "#692D0F", "#B44BFF", "#C3C378", "#69005A",
                                                         "#E1004B", "#96D2A5", "#870F3C", "#005AC3", "#785A78",
                                                         "#A587FF", "#00C837", "#0000FF", "#8C8C3C"};

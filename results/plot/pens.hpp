@@ -8,17 +8,18 @@
 
 namespace mpm {
 
-/// How the curve of a CV is drawn in every panel: CVs differ in colour, and in dash once the colours are used
-/// up. The one that a panel is about is thick.
+/// Returns the pen of a CV in every panel. CVs differ in colour and, when the colours are used up, in dash. A
+/// panel draws the CV that it is about `thick`.
 Pen cv_pen(Eigen::Index cv, bool thick = false);
 
-/// How a method is drawn among others: 21 differ in colour, and neighbours in dash and mark as well.
+/// Returns the pen of a method among others: 21 methods differ in colour, and neighbours also in dash and
+/// mark.
 Pen method_pen(std::size_t method);
 
-/// A threshold of the study, or an edge of its band.
+/// The pen of a threshold of the study, or of an edge of its band.
 inline const Pen kThreshold{colour::kBlack, Dash::dashed, Mark::none, 1.2};
 
-/// What guessing would give.
+/// The pen of what guessing would give.
 inline const Pen kChance{colour::kGrey, Dash::dotted, Mark::none, 1.2};
 
 }  // namespace mpm

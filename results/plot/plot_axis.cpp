@@ -13,14 +13,14 @@
 namespace mpm {
 namespace {
 
-/// Are the ends and ticks of this range different numbers as plot_number() writes them?
+/// Tells whether plot_number() writes the ends and ticks of this range as different numbers.
 bool is_wide(double lower, double upper) {
   constexpr double kLeastShare = 1e-4;
   return upper - lower > kLeastShare * std::max(std::abs(lower), std::abs(upper));
 }
 
-/// The limits of an axis: what is set, and what is drawn with a margin where nothing is, or where what is set
-/// leaves no room for it.
+/// Returns the limits of an axis. A limit that is not set follows from the data, with a margin; so do both if
+/// the limits that are set leave no range between them.
 std::pair<double, double> limits(const Axis& axis, double lower, double upper) {
   constexpr double kMargin = 0.05;
   if (lower > upper)  // nothing is drawn
@@ -41,8 +41,8 @@ std::pair<double, double> limits(const Axis& axis, double lower, double upper) {
   return is_wide(first, last) ? std::pair(first, last) : std::pair(lower, upper);
 }
 
-/// Ticks of a logarithmic axis: 1, 2, 5 in each decade, or the decades alone when these are many, or every
-/// n-th of them.
+/// Returns the ticks of a logarithmic axis: 1, 2, 5 in each decade; if there are many decades, only the
+/// decades, or every n-th of them.
 std::vector<double> logarithmic_ticks(double lower, double upper) {
   constexpr double kMostTicks = 8;
   const double decades = std::log10(upper / lower);
@@ -59,7 +59,7 @@ std::vector<double> logarithmic_ticks(double lower, double upper) {
   return ticks;
 }
 
-/// The smallest step of 1, 2 or 5 times a power of ten that leaves a tick this much room, in pixels.
+/// Returns the smallest step of 1, 2 or 5 times a power of ten that leaves `room` pixels for each tick.
 double tick_step(double lower, double upper, double length, double room) {
   const double least = (upper - lower) * room / length;
   const double decade = std::pow(10.0, std::floor(std::log10(least)));
@@ -69,7 +69,7 @@ double tick_step(double lower, double upper, double length, double room) {
   return 10.0 * decade;
 }
 
-/// A label of a tick is a format, too: a percent sign is written twice.
+/// Returns a tick label for gnuplot. gnuplot reads it as a format, so a percent sign is written twice.
 std::string tick_word(const std::string& label) {
   std::string word;
   for (const char c : gnuplot_label(label))

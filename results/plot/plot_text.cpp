@@ -7,11 +7,11 @@
 namespace mpm {
 namespace {
 
-/// gnuplot 5.4 misreads a doubled quote at the beginning of a string, so the typographer's one stands for it.
+/// Used for an apostrophe, since gnuplot 5.4 misreads a doubled quote at the beginning of a string.
 constexpr std::string_view kApostrophe = "\xE2\x80\x99";
-constexpr std::string_view kMarkup = "\\_^{}@&~";  // what gnuplot reads as markup, and '\' itself
+constexpr std::string_view kMarkup = "\\_^{}@&~";  // characters that gnuplot reads as markup, and '\' itself
 
-/// Takes a label apart and hands each piece on: on_text(characters), on_sub() at "_{", on_end() at its "}".
+/// Splits a label and passes on its pieces: on_text(characters), on_sub() at "_{", on_end() at its "}".
 template <class OnText, class OnSub, class OnEnd>
 void read_label(std::string_view label, OnText on_text, OnSub on_sub, OnEnd on_end) {
   bool subscript = false;

@@ -12,8 +12,8 @@
 namespace mpm {
 namespace {
 
-/// Titles and descriptions of gnuplot's own (its series would all be called "gnuplot_plot_1"), effects that
-/// are not used, and groups that hold nothing.
+/// The elements to remove: gnuplot's own titles and descriptions (it calls its series "gnuplot_plot_1"),
+/// unused effects, and empty groups.
 constexpr const char* kWaste = "//title | //desc | //filter | //g[not(@id) and not(*)]";
 
 void remove_waste(const pugi::xml_document& drawing) {
@@ -29,15 +29,15 @@ void put_before_ids(const pugi::xml_document& drawing, const std::string& id) {
       found.attribute() = fmt::format("#{}-{}", id, target.substr(1)).c_str();
 }
 
-/// The hypertext of a point, which gnuplot writes as gnuplot_svg.showHypertext(evt,'...').
+/// Returns the hypertext of a point, which gnuplot writes as gnuplot_svg.showHypertext(evt,'...').
 std::string hypertext(std::string_view call) {
   const std::size_t begin = call.find('\'');
   const std::size_t end = call.rfind('\'');
   return begin == end ? std::string() : std::string(call.substr(begin + 1, end - begin - 1));
 }
 
-/// Makes what is in the point a link. By the keyboard its row is reached in the table, not over hundreds of
-/// points.
+/// Makes the content of a point a link. The keyboard skips it: keyboard users reach its row in the table
+/// without passing hundreds of points.
 void link_point(pugi::xml_node point, const std::string& anchor) {
   pugi::xml_node link = point.append_child("a");
   link.append_attribute("href") = ("#" + anchor).c_str();
@@ -59,7 +59,7 @@ void name_points(const pugi::xml_document& drawing, const SvgText& text) {
   }
 }
 
-/// A drawing in a page has the attributes that it needs, and says what it shows.
+/// Replaces the attributes of a drawing by those that it needs in a page, and adds its description.
 void describe(pugi::xml_node svg, const std::string& description) {
   std::istringstream box(svg.attribute("viewBox").value());
   std::string left, top, width, height;
@@ -78,7 +78,7 @@ void describe(pugi::xml_node svg, const std::string& description) {
 
 std::string svg_element(const std::string& drawing, const SvgText& text) {
   pugi::xml_document document;
-  // A text may consist of blanks; those between elements mean nothing.
+  // Blanks are kept, because a text may consist of blanks; between elements they mean nothing.
   const auto parsed =
       document.load_buffer(drawing.data(), drawing.size(), pugi::parse_default | pugi::parse_ws_pcdata_single,
                            pugi::encoding_utf8);

@@ -28,7 +28,7 @@ std::vector<double> row(const Eigen::MatrixXd& signal, Eigen::Index i, Eigen::In
   return {values.begin(), values.end()};
 }
 
-/// What all panels of one loop share.
+/// What all panels of one loop have in common.
 struct Setting {
   const Study& study;
   Eigen::Index samples;
@@ -52,12 +52,12 @@ struct Setting {
   }
 };
 
-/// Where a limit is worth its place in a panel: the range of the signals, and as much again on either side. A
-/// CV that moves little would else be a flat line between its limits.
+/// The range in which a panel shows limits: the range of the signals, and as much again on either side.
+/// Otherwise a CV that moves little would be a flat line between its limits.
 struct Reach {
   double lower = -kInfinity, upper = kInfinity;
 
-  /// Of signals that stand still every limit is within reach.
+  /// If the signals stand still, every limit is within reach.
   explicit Reach(const std::vector<std::vector<double>>& signals) {
     double least = kInfinity, largest = -kInfinity;
     for (const std::vector<double>& signal : signals)
@@ -87,7 +87,7 @@ Panel cv_panel(const Setting& at, const Trajectory& loop, const NominalOutputs& 
   const Reach reach({y, y0});
   add_limits(panel, at.study.controller.cv_hard, i, reach, kHardLimit);
   add_limits(panel, at.study.controller.cv_soft, i, reach, kSoftLimit);
-  panel.line(at.time, y0, kNominal);  // below the thinner line
+  panel.line(at.time, y0, kNominal);  // first, so that it lies below the thinner line
   if (at.study.controller.has_setpoint(i))
     panel.steps(at.time, row(loop.y_set, i, at.samples), kSetpoint);
   panel.line(at.time, y, kRecorded);

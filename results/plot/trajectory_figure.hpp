@@ -9,11 +9,11 @@
 
 namespace mpm {
 
-/// One closed loop as a figure, one panel a variable (6.7 to 6.9 of the thesis): CVs y with their nominal
-/// outputs y0 and their soft and hard limits, MVs with their targets and hard limits, measured disturbances.
-/// Only the samples that the controller finished are drawn.
+/// Makes a figure of one closed loop, with one panel per variable (6.7 to 6.9 of the thesis): CVs y with
+/// their nominal outputs y0 and their soft and hard limits, MVs with their targets and hard limits, and
+/// measured disturbances. Only the samples that the controller finished are drawn.
 ///
-/// `name` becomes that of the figure; `nominal.y0` has the shape of `loop.y`.
+/// `name` becomes the name of the figure. `nominal.y0` must have the shape of `loop.y`.
 Figure trajectory_figure(const Study& study, const Trajectory& loop, const NominalOutputs& nominal,
                          const std::string& name);
 
