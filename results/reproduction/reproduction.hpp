@@ -7,29 +7,30 @@
 #include "analysis/reproduction/table_reproduction.hpp"
 #include "results/document/document.hpp"
 
-// The tables of the thesis beside ours, of one run or over several seeds, for people and for programs.
-// `changes` are those made to all studies, KEY=VALUE. There must be one table or more.
+// The tables of the thesis beside ours, from one run or over several seeds, for people and for programs.
+// `changes` are the changes made to all studies, as KEY=VALUE. There must be at least one table.
 
 namespace mpm {
 
-/// In each cell ours, the thesis's in brackets, and a mark where the verdicts differ; and the agreement of
-/// each table and in total.
+/// Shows in each cell our number, the number of the thesis in brackets, and a mark if the verdicts differ.
+/// Also shows the agreement of each table and in total.
 Document reproduction_document(const std::vector<ReproducedTable>& tables, const std::string& version,
                                const std::vector<std::string>& changes = {});
-/// In each cell the median of ours, the thesis's in brackets, and the share of the seeds whose verdict
-/// agrees.
+/// Shows in each cell the median of our numbers, the number of the thesis in brackets, and the share of the
+/// seeds whose verdict agrees.
 Document reproduction_document(const std::vector<SeededTable>& tables, const std::string& version,
                                const std::vector<std::string>& changes = {});
 
-/// {"tables": [{"number", "title", "note", "agreeing", "judged", "rows": [{"label", "remark", "cells":
-/// [{"head", "cv", "quantity", "ours", "thesis", "ratio", "our_verdict", "thesis_verdict", "agrees"}]}]}],
-/// "agreeing", "judged"}; null where there is no number or verdict. With changes they are there as "set".
+/// Returns {"tables": [{"number", "figure", "title", "note", "agreeing", "judged", "rows": [{"label",
+/// "remark", "cells": [{"head", "cv", "mv", "quantity", "ours", "thesis", "ratio", "our_verdict",
+/// "thesis_verdict", "agrees"}]}]}], "agreeing", "judged"}. A missing number or verdict is null. Changes, if
+/// any, are in "set".
 std::string reproduction_json(const std::vector<ReproducedTable>& tables,
                               const std::vector<std::string>& changes = {});
-/// {"set": [...], "seeds", "tables": [{"number", "figure", "title", "note", "judged", "agreeing": [one a
-/// seed], "rows": [{"label", "remark", "cells": [{"head", "cv", "mv", "quantity", "median", "numbers",
-/// "thesis", "thesis_verdict", "share"}]}]}], "judged", "mean_agreeing"}; null where there is no number or
-/// verdict.
+/// Returns {"set": [...], "seeds", "tables": [{"number", "figure", "title", "note", "judged", "agreeing":
+/// [one per seed], "rows": [{"label", "remark", "cells": [{"head", "cv", "mv", "quantity", "median",
+/// "numbers", "thesis", "thesis_verdict", "share"}]}]}], "judged", "mean_agreeing"}. A missing number or
+/// verdict is null.
 std::string reproduction_json(const std::vector<SeededTable>& tables,
                               const std::vector<std::string>& changes);
 

@@ -36,7 +36,7 @@ std::string thesis_words(const ThesisTable& table) {
   return "the thesis gives no numbers here, only verdicts";
 }
 
-/// "1.23 (1.2)": ours, and the thesis's where it gives one.
+/// "1.23 (1.2)": our number, and the number of the thesis if it gives one.
 Cell numbers_cell(double ours, const TableCell& cell) {
   return fmt::format("{}{}", std::isnan(ours) ? "-" : fmt::format("{:.3g}", ours),
                      cell.thesis ? fmt::format(" ({:g})", *cell.thesis) : "");
@@ -149,7 +149,7 @@ Document document_of(const std::vector<AnyTable>& tables, const std::string& hea
   document.sections.push_back(agreement);
   for (const AnyTable& table : tables)
     document.sections.push_back(table_section(table));
-  agreement.shown = Shown::text;  // which is read from its end
+  agreement.shown = Shown::text;  // last, because a text is read from its end
   document.sections.push_back(std::move(agreement));
   return document;
 }
