@@ -17,7 +17,8 @@ Json rates_json(const Study& study, const MethodRates& method) {
   return rates;
 }
 
-/// The points as columns. The first and the last threshold are infinite, which JSON cannot say: null.
+/// Returns the points as columns. JSON has no infinity: the first and the last threshold, which are infinite,
+/// are null.
 Json roc_json(const RocCurve& roc, const Interval& area) {
   Json threshold = Json::array(), true_positive = Json::array(), false_positive = Json::array();
   roc.each([&](const RocPoint& point) {
@@ -35,7 +36,8 @@ Json roc_json(const RocCurve& roc, const Interval& area) {
           {"false_positive_rate", false_positive}};
 }
 
-/// Null for a threshold of too few loops. An infinite one, too, is null in JSON: no finite score is above it.
+/// Returns the thresholds. A threshold is null if it had too few loops, or if it is infinite (no finite score
+/// is above it), which JSON cannot write.
 Json thresholds_json(const CalibratedThresholds& thresholds) {
   Json json = Json::object();
   for (const ThresholdRow& row : threshold_rows()) {

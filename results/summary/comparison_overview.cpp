@@ -15,8 +15,8 @@
 namespace mpm {
 namespace {
 
-/// Rates in the order of reading, each with the one that takes its place where some loop counts for it. Those
-/// that no loop counts for are left out.
+/// Rates in the order of reading, each with the rate that replaces it if that one counts any loop. Rates that
+/// count no loop are left out.
 constexpr std::pair<std::string_view, std::string_view> kOverview[] = {
     {"false_alarm_healthy", ""},    {"detected_impact", "power_05_impact"},
     {"power_05_impact", ""},        {"located", ""},
@@ -29,12 +29,12 @@ bool is_counted(const StudyFindings& findings, std::string_view rate) {
                      [rate](const MethodFindings& method) { return method.rates[rate].total > 0; });
 }
 
-/// What the mark of overview_cell() means.
+/// Explains the mark of overview_cell().
 std::string in_part_words() {
   return fmt::format("~: verdicts on fewer than {:g} % of the loops.", 100 * kFewestAnswers);
 }
 
-/// Methods by the first of these rates that some loop counts for, the best one first.
+/// Methods are ranked by the first of these rates that counts any loop.
 constexpr std::string_view kRankedBy[] = {"source_05_impact", "source", "power_05_impact", "detected_impact"};
 
 std::vector<const MethodFindings*> by_rank(const StudyFindings& findings) {
@@ -54,7 +54,7 @@ std::vector<const MethodFindings*> by_rank(const StudyFindings& findings) {
   return methods;
 }
 
-/// "96 [90, 99]", with a mark for a method that answers on a part of the loops only.
+/// "96 [90, 99]", with a mark if the method answers on too few of the loops.
 Cell overview_cell(const MethodRates& rates, std::string_view name) {
   const Rate& rate = rates[name];
   Cell cell = number(rate, NumberForm::whole_percent);

@@ -22,7 +22,7 @@ Number area(const RocCurve& roc, const Interval& interval) {
                        : Number{};
 }
 
-/// The share of healthy loops that the method says it flags, and a mark when it does not.
+/// The share of healthy loops that the method says it flags, with a mark if the loops contradict it.
 Cell stated_cell(const MethodFindings& method) {
   const MethodDescription& description = method.form->method();
   const FalseAlarmMark mark = false_alarm_mark(description, method.rates);
@@ -35,7 +35,7 @@ Cell stated_cell(const MethodFindings& method) {
   return cell;
 }
 
-/// Words in the first column, one column a method.
+/// A table with words in the first column and one column per method.
 class MethodsTable {
  public:
   MethodsTable(std::string caption, std::string what, const Methods& methods)
@@ -79,7 +79,7 @@ Table rates_table(const Study& study, const Methods& methods) {
   return table.take();
 }
 
-/// What the marks of stated_cell() mean, when there are any.
+/// Explains the marks of stated_cell(), if there are any.
 void add_marks(Section& section, const Methods& methods) {
   if (std::any_of(methods.begin(), methods.end(), [](const MethodFindings& method) {
         return false_alarm_mark(method.form->method(), method.rates) != FalseAlarmMark::none;
@@ -90,7 +90,7 @@ void add_marks(Section& section, const Methods& methods) {
                     100 * kUsualFalseAlarms));
 }
 
-/// On what the thresholds were calibrated, what they are, and where the loops were too few.
+/// Says which loops calibrated the thresholds, what the thresholds are, and where there were too few loops.
 void add_calibration(Section& section, const Campaign& campaign, const Methods& methods) {
   const CalibrationOptions& options = *campaign.study.calibration;
   MethodsTable table(fmt::format("Thresholds from {} healthy loops and {} with a disturbance, seed {}; {} is "
@@ -111,7 +111,7 @@ void add_calibration(Section& section, const Campaign& campaign, const Methods& 
                                 as_label(method.name()), threshold.loops));
 }
 
-/// Which rates cannot be had, and which loops have no verdict, with the reasons.
+/// Says which rates are not available, and which loops have no verdict, with the reasons.
 void add_unanswered(Section& section, const Study& study, const Methods& methods) {
   Sentences sentences;
   for (const MethodFindings& method : methods) {

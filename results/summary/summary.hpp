@@ -11,15 +11,15 @@ namespace mpm {
 
 /// Progress of an unfinished run.
 struct Unfinished {
-  std::int64_t done = 0, experiments = 0;  ///< experiments that are there, and of the whole campaign
+  std::int64_t done = 0, experiments = 0;  ///< experiments finished, and in the whole campaign
 };
 
-/// The results of a run: the study, whether the basis case is healthy, the measured numbers with their
-/// intervals beside the reported ones, which experiments failed or got a wrong verdict, and the methods side
-/// by side where there are several. `file` is the archive, for the commands that replay these. The summary of
-/// a campaign that is not finished says so first. As a text it is at most 100 columns wide except for the
-/// methods. Its data have all experiments instead of the first ones; docs/report.md lists the keys.
-/// `campaign` and `findings` must outlive it.
+/// Makes the summary of a run: the study, whether the basis case is healthy, the measured numbers with their
+/// intervals beside the reported ones, which experiments failed or got a wrong verdict, and, if there are
+/// several methods, the methods side by side. `file` is the archive, for the commands that replay
+/// experiments. The summary of an unfinished campaign begins with that fact. As a text it is at most 100
+/// columns wide, except for the methods. Its data list all experiments instead of the first ones;
+/// docs/report.md lists the keys. `campaign` and `findings` must outlive it.
 Document summary_document(const Campaign& campaign, const StudyFindings& findings, const std::string& file,
                           const std::optional<Unfinished>& unfinished = {});
 

@@ -42,7 +42,7 @@ Json run_json(const CampaignInfo& info) {
           {"jobs", info.jobs}};
 }
 
-/// What `number` gives for every row; a verdict as its word.
+/// Returns the value of `number` for each row; a verdict as its word.
 template <class Owner, class Number>
 Json numbers_json(const std::vector<Row<Owner>>& rows, const Number& number) {
   Json numbers = Json::object();
@@ -185,7 +185,7 @@ Json cv_json(const Study& study, const ExperimentRecord& record, Eigen::Index cv
           {"acf", numbers_json(acf_rows(), of_cv)}};
 }
 
-/// Named scenarios; an empty list in a study of random experiments.
+/// Lists the named scenarios; the list is empty in a study of random experiments.
 Json scenarios_json(const Campaign& campaign) {
   const Study& study = campaign.study;
   Json list = Json::array();

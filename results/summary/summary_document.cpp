@@ -54,7 +54,7 @@ Section findings_section(const Campaign& campaign, const SummaryContent& parts) 
   return section;
 }
 
-/// A table of the first ones, and how many there are.
+/// Adds a table of the first experiments, and how many there are in all.
 void add_first(Section& section, const std::string& what, Table table, std::size_t count) {
   section.say(fmt::format("{} {}{}", counted(static_cast<std::int64_t>(count), "experiment"), what,
                           table.rows.empty() ? "" : ":"));
@@ -90,7 +90,7 @@ Document summary_document(const Campaign& campaign, const StudyFindings& finding
   document.sections = {run_section(campaign, *content), findings_section(campaign, *content),
                        scenarios_section(campaign, *content, file),
                        experiments_section(campaign, *content, file)};
-  // The content lives as long as a writer may ask for the data.
+  // The functions below keep the content alive as long as a writer may ask for the data.
   document.sections[0].data = [&campaign, content, unfinished](auto& json) {
     put_run(json, campaign, *content, unfinished);
   };

@@ -24,7 +24,7 @@ bool is_own(const StudyFindings& findings, const std::string& method) {
 
 namespace {
 
-/// Where the controller works, and how its loops interact there.
+/// Says where the interaction of the loops is strongest at the operating point, and how strong it is.
 std::string interaction_words(const Study& study, const BasisCase& basis) {
   const LoopInteraction interaction = loop_interaction(study, basis.point, basis.sensitivity);
   if (interaction.frequency.size() == 0)
@@ -41,7 +41,7 @@ std::string interaction_words(const Study& study, const BasisCase& basis) {
                      gains.empty() ? "" : "; |RGA| there: ", listed(gains));
 }
 
-/// What the controller holds its CVs to.
+/// Says what kind of controller the study has.
 std::string controller_words(const Study& study) {
   const MpcOptions& controller = study.controller;
   if (study.controller_program)
@@ -60,7 +60,7 @@ bool is_in_table(const StudyFindings& findings, const Finding& row) {
   if (row.prominence == Prominence::detail || row.group == FindingGroup::dominance ||
       row.group == FindingGroup::method)
     return false;
-  // A method that answers no loop, for want of setpoints perhaps, has nothing to show.
+  // A method that answers no loop, perhaps because there are no setpoints, has nothing to show.
   return is_own(findings, row.method) || findings.of(row.method)->rates["answered"].hits > 0;
 }
 
@@ -82,7 +82,7 @@ std::string heading_of(const StudyFindings& findings, const Finding& row) {
   return "All experiments";
 }
 
-/// What was wrong, and on a page the command that runs the experiment again.
+/// What was wrong and, on a page, the command that runs the experiment again.
 Cell fault_cell(const Study& study, const ExperimentDraw& draw, const std::string& file) {
   return Cell(as_label(fault_text(study, draw)))
       .with(code(fmt::format("mpmbench replay {} {}", file, draw.index)));
@@ -98,7 +98,7 @@ std::vector<Table::Column> with_cvs(std::vector<Table::Column> columns, const St
   return columns;
 }
 
-/// What was found; the wrong one is marked.
+/// What was found, marked if it is wrong.
 Cell marked(const std::string& found, Correctness correctness) {
   return correctness == Correctness::right || correctness == Correctness::not_judged
              ? Cell(as_label(found))

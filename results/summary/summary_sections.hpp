@@ -9,7 +9,7 @@
 #include "results/document/document.hpp"
 #include "results/summary/summary_content.hpp"
 
-// What summary and report say in the same tables.
+// Tables that the summary and the report share.
 
 namespace mpm {
 
@@ -21,13 +21,13 @@ std::string identification_words(const Study& study, const BasisCase& basis);
 /// Differences between the two solvers on steps that both solved.
 std::string audit_words(const SummaryContent& parts, const CampaignInfo& info);
 
-/// The findings that matter to people, beside the reported ones where the study has some.
+/// The most important findings for people, beside the reported ones if the study has some.
 Table findings_table(const Study& study, const StudyFindings& findings);
 
 /// I_MPM of the experiments with both faults, by the dominance of the mismatch.
 Table dominance_table(const Study& study, const std::vector<DominanceBin>& bins);
 
-/// The first experiments with a wrong verdict of the method that diagnoses. `number` makes words of an index.
+/// The first experiments for which the method that diagnoses gave a wrong verdict. `number` formats an index.
 Table wrong_table(const Study& study, const SummaryContent& parts, const std::string& file, std::size_t most,
                   const std::function<std::string(std::int64_t)>& number);
 /// The first experiments without a result.
@@ -36,21 +36,21 @@ Table failed_table(const Study& study, const SummaryContent& parts, const std::s
 
 /// Named scenarios: the verdict on each compared with the study.
 Table scenario_table(const Campaign& campaign, const std::string& file);
-/// Ivar and Ivar_diag of every CV; what lies outside the band of impact is marked.
+/// Ivar and Ivar_diag of every CV. Values outside the band of impact are marked.
 Table index_table(const Campaign& campaign);
 /// The indicators of the flagged CVs.
 Table indicator_table(const Campaign& campaign);
 /// The CVs whose autocorrelation functions differ from those of their nominal outputs.
 Table acf_table(const Campaign& campaign);
 
-/// Fits to the diagonal of T0, and what multiplied parameters do to Ivar_diag.
+/// Fits to the diagonal of T0, and the effect of multiplied parameters on Ivar_diag.
 Table s0_change_table(const Study& study, const SummaryContent& parts);
-/// The fits with MVs fixed, and the multipliers between the two.
+/// The fits with MVs fixed, and the multipliers from one fit to the other.
 Table s0_structure_table(const Study& study, const SummaryContent& parts);
 
-/// Is it empty, or the method that diagnoses, whose findings have no method in their names?
+/// Tells whether `method` is empty or the method that diagnoses: its findings have no method in their names.
 bool is_own(const StudyFindings& findings, const std::string& method);
-/// "MPM"; of another method than the one that diagnoses "MPM, counterfactual".
+/// "MPM"; for a method other than the one that diagnoses "MPM, counterfactual".
 std::string kind_heading(const StudyFindings& findings, ExperimentKind kind, const std::string& method);
 
 /// "u1, u2": the MVs that the study fixes.

@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-/// The headline findings of the first study that was run: later ones have the same.
+/// Returns the headline findings of the first study that was run. Later studies have the same.
 std::vector<Finding> columns_of(const std::vector<SweepRow>& rows) {
   std::vector<Finding> columns;
   const auto first =

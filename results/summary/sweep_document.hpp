@@ -13,13 +13,13 @@ struct SweepRow {
   std::string choice;  ///< empty for the base study
   std::string value;
   bool healthy = true;  ///< the basis case passed its self-check
-  std::string trouble;  ///< why it could not be run; empty when it was
+  std::string trouble;  ///< why the study could not be run; empty if it was run
   std::vector<Finding> findings;
 };
 
-/// The sweep as a table: one line a study, grouped by choice, the base study first, one column a headline
-/// number. A star marks a study whose basis case fails its self-check; one that could not be run has no
-/// numbers, and the reason below the table. `rows` must outlive the document.
+/// Makes a table of the sweep: one line per study, grouped by choice, with the base study first, and one
+/// column per headline number. A star marks a study whose basis case fails its self-check. A study that could
+/// not be run has no numbers; the reason is below the table. `rows` must outlive the document.
 Document sweep_document(const std::string& title, const std::vector<SweepRow>& rows);
 
 }  // namespace mpm
