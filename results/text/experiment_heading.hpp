@@ -8,14 +8,14 @@
 
 namespace mpm {
 
-/// The verdict of the chain: "located y1, I_MPM 0.123: MPM", with "no impact, " before it where there is
-/// none; of a named scenario "flagged y1 (MPM); right"; how it ended when there is no verdict.
+/// Returns the verdict of the chain: "located y1, I_MPM 0.123: MPM", after "no impact, " if it found none;
+/// for a named scenario "flagged y1 (MPM); right"; if there is no verdict, how the experiment ended.
 std::string verdict_text(const Study& study, const ExperimentRecord& record);
 
-/// Title, verdict and conditions in lines that fit above a figure, however many faults there are.
+/// Returns title, verdict and conditions in lines that fit above a figure, even with many faults.
 std::vector<std::string> experiment_heading(const Study& study, const ExperimentRecord& record);
 
-/// Title and verdict in one line.
+/// Returns title and verdict in one line.
 std::string experiment_line(const Study& study, const ExperimentRecord& record);
 
 }  // namespace mpm

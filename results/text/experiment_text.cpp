@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// Rounding of a search that ends at 0; no plant has a gain factor or a dead time of this size.
+/// A smaller value is rounding of a search that ends at 0; no plant has such a gain factor or dead time.
 constexpr double kPrintedAsZero = 1e-9;
 
 /// "0.3 s + 2" of [0.3, 2].
@@ -106,7 +106,7 @@ std::string signal_text(const Study& study, const DisturbanceSignal& signal) {
   return counted(std::ssize(std::get<StepSequence>(signal).steps), "step");
 }
 
-/// The white signal of a random disturbance is not worth a word.
+/// Leaves out the signal of a random disturbance if it is white.
 std::string disturbance_text(const Study& study, const Disturbance& disturbance, bool named) {
   const std::string on = "disturbance on " + place_text(study, disturbance);
   const bool worth_saying = named || !std::holds_alternative<WhiteNoise>(disturbance.signal);
@@ -236,7 +236,7 @@ std::string estimate_text(double value, double lower, double upper, SizeBound bo
 std::string dead_time_text(double shift, double lower, double upper, SizeBound bound,
                            const std::string& unit) {
   const bool shorter = shift < -kPrintedAsZero;
-  if (shorter) {  // the same in sizes of what is taken away
+  if (shorter) {  // the same, as the size of the reduction
     shift = -shift;
     std::swap(lower, upper);
     lower = -lower;

@@ -9,10 +9,9 @@
 
 namespace mpm {
 
-// How JSON of the program is written, and how numbers with an uncertainty stand in it; NaN and infinity are
-// null.
+// How the program writes JSON, and how JSON holds numbers with an uncertainty. NaN and infinity are null.
 
-/// JSON as it is written. Texts of others may hold bytes that are no UTF-8: U+FFFD stands there.
+/// Writes JSON. U+FFFD replaces bytes in foreign texts that are not UTF-8.
 inline std::string json_text(const nlohmann::ordered_json& json, int indent = 2) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
