@@ -22,13 +22,14 @@ bool begins_with_number(const std::string& field) {
   return error == std::errc() && end != field.data();
 }
 
-/// Digits, and what may stand in a number: no unit such as 1/min.
+/// Tells whether a field may be a number: it has digits and only signs of numbers, unlike a unit such as
+/// 1/min.
 bool may_be_number(const std::string& field) {
   return field.find_first_of("0123456789") != std::string::npos &&
          field.find_first_not_of("+-0123456789.,eE' ") == std::string::npos;
 }
 
-/// Takes the rows of units away. A file that has nothing else keeps them.
+/// Removes the rows of units. A file that has no other rows keeps them.
 void take_units(RecordColumns& csv) {
   constexpr std::size_t kMostRows = 5;
   const auto says_nothing = [&csv](std::size_t row) {

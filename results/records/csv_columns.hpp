@@ -8,10 +8,10 @@
 
 namespace mpm {
 
-/// The columns of a CSV text, which CsvReader reads. Rows without a number and a date right below the heading
-/// are taken as units, with a warning. The decimal sign is ".".
+/// Reads the columns of a CSV text with CsvReader. Rows right below the heading that hold neither a number
+/// nor a date are taken as units, with a warning. The decimal sign is ".".
 ///
-/// Errors: those of CsvReader; InputError for one column, no heading or no rows.
+/// Errors: those of CsvReader; InputError if there is only one column, no heading or no row.
 RecordColumns parse_csv(std::string_view text, const std::string& file, CsvForm form = {});
 
 }  // namespace mpm

@@ -33,7 +33,8 @@
 namespace mpm {
 namespace {
 
-/// Whether the word stands in the name with no letter or digit beside it, as "f" in "fi_f" and not in "flow".
+/// Tells whether the word occurs in the name with no letter or digit beside it, as "f" in "fi_f" but not in
+/// "flow".
 bool has_word(const std::string& name, const std::string& word) {
   const auto is_border = [&](std::size_t at) {
     return at >= name.size() || std::isalnum(static_cast<unsigned char>(name[at])) == 0;
@@ -44,7 +45,7 @@ bool has_word(const std::string& name, const std::string& word) {
   return false;
 }
 
-/// Is it called so: "fc11.mode", "fc11_quality"?
+/// Tells whether the name is one of a mode or a quality: "fc11.mode", "fc11_quality".
 bool says_mode_or_quality(const std::string& name) {
   static constexpr std::array<std::string_view, 6> kWords{"mode", "quality", "status", "qual", "q", "qc"};
   const std::size_t last = name.find_last_of("._ -/:");
@@ -52,7 +53,7 @@ bool says_mode_or_quality(const std::string& name) {
          std::find(kWords.begin(), kWords.end(), std::string_view(name).substr(last + 1)) != kWords.end();
 }
 
-/// A name as a key of TOML.
+/// Writes a name as a key of TOML.
 std::string key_of(const std::string& name) {
   const bool bare = std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return c < 0x80 && (std::isalnum(c) != 0 || c == '_' || c == '-');
@@ -60,7 +61,7 @@ std::string key_of(const std::string& name) {
   return bare && !name.empty() ? name : toml_literal(name);
 }
 
-/// A text of somebody else in a comment: on its line.
+/// Writes a foreign text so that it stays on one comment line.
 std::string in_comment(const std::string& text) {
   std::string shown = plain_text(cut_utf8(text, 4 * kShownBytes));
   std::replace(shown.begin(), shown.end(), '\n', ' ');
@@ -71,7 +72,7 @@ std::string three_digits(double value) {
   return fmt::format("{:.3g}", value);
 }
 
-/// Without those of bad quality and those that cannot be measured.
+/// Returns the values of a column without those of bad quality and those that cannot be measurements.
 std::vector<double> measured_values(const RecordColumns& file, std::size_t column) {
   const std::vector<std::string>& cells = file.columns[column];
   std::vector<double> values(cells.size(), kNaN);
@@ -91,7 +92,7 @@ std::vector<double> measured_values(const RecordColumns& file, std::size_t colum
   return values;
 }
 
-/// The numbers of a column, one after the other.
+/// Statistics of the numbers of a column.
 struct ColumnLook : SignalLook {
   ColumnLook(const RecordColumns& file, std::size_t column) : SignalLook(measured_values(file, column)) {}
 
@@ -142,7 +143,8 @@ class DataSketcher {
  private:
   const RecordColumns& file() const { return rows_.file; }
 
-  /// By its name, its name as the export writes it, a part of another name, or the nearest name.
+  /// Finds a column by the variable's name, by that name as the export writes it, as a part of a heading, or
+  /// by the nearest heading.
   void find_column(const std::string& variable, bool is_mv) {
     std::optional<std::size_t> found = file().find(variable);
     for (const char* prefix : {"y", "u", "d"})
@@ -161,9 +163,9 @@ class DataSketcher {
     }
   }
 
-  /// The one column that has the variable as a word of its name ("FI_F"), or else anywhere in it; of several
-  /// the one of the measurement (PV), of an MV of what the controller writes (SP, OP). Its mode and its
-  /// quality are none of them.
+  /// Returns the only column that has the variable as a word of its heading ("FI_F"), or else anywhere in it.
+  /// Of several columns, takes the measurement (PV), or for an MV the output of the controller (SP, OP).
+  /// Columns of modes and qualities do not count.
   std::optional<std::size_t> only_column_with(const std::string& variable, bool is_mv) const {
     static constexpr std::array kOfMv{"sp", "op", "out", "pv"}, kOfOthers{"pv", "val", "value", "av"};
     std::vector<std::size_t> as_word, anywhere;
@@ -204,7 +206,7 @@ class DataSketcher {
 
   void line(const std::string& text) { sketch_.table += text + "\n"; }
 
-  /// KEY = {variable = value of its column, ...}
+  /// Writes KEY = {variable = value of its column, ...}.
   template <class Of>
   std::string assigned(const char* key, Of of) const {
     std::vector<std::string> pairs;
@@ -242,8 +244,8 @@ class DataSketcher {
     write_others();
   }
 
-  /// The quarter of the file in which the CVs vary least and every MV moves, as a comment: that the
-  /// controller worked as designed there only people know.
+  /// Writes, as a comment, the quarter of the file in which the CVs vary least and every MV moves. Only
+  /// people know whether the controller worked as designed there.
   void write_benchmark() {
     constexpr Eigen::Index kFewestRows = 60;
     const auto rows = static_cast<Eigen::Index>(rows_.times.size());
@@ -266,7 +268,7 @@ class DataSketcher {
                      toml_literal(rows_.text(rows_.times[static_cast<std::size_t>(end - 1)]))));
   }
 
-  /// The columns of these variables, one row each, NaN where there is no number; those that have one.
+  /// Returns the columns of those variables that have one, one row each; NaN if a cell has no number.
   Eigen::MatrixXd numbers_of(const std::vector<PlantModel::Variable>& variables) const {
     Eigen::MatrixXd numbers(static_cast<Eigen::Index>(variables.size()),
                             static_cast<Eigen::Index>(file().rows()));
@@ -298,7 +300,7 @@ class DataSketcher {
          }));
   }
 
-  /// The name of column_beside().
+  /// Returns the heading of column_beside().
   std::optional<std::string> beside(std::size_t column, const std::string& ending) const {
     const auto found = column_beside(file(), column, ending);
     return found ? std::optional(toml_literal(file().names[*found])) : std::nullopt;
@@ -318,7 +320,7 @@ class DataSketcher {
     line(text);
   }
 
-  /// FC11.MODE beside FC11.SP, FC11.OP or FC11.PV, of CVs and MVs.
+  /// Writes the modes of CVs and MVs: FC11.MODE beside FC11.SP, FC11.OP or FC11.PV.
   void write_modes() {
     const std::string text = assigned("mode", [&](std::size_t column) {
       const bool is_tag = ends_with(column, ".sp") || ends_with(column, ".op") || ends_with(column, ".pv");
@@ -386,8 +388,8 @@ class DataSketcher {
   StampedRows rows_;
   DataSketch sketch_;
   std::vector<std::size_t> taken_;
-  std::vector<std::pair<std::string, std::size_t>> columns_;  ///< of the variables that have one
-  std::map<std::size_t, ColumnLook> looks_;                   ///< of these columns
+  std::vector<std::pair<std::string, std::size_t>> columns_;  ///< variables that have a column, and its place
+  std::map<std::size_t, ColumnLook> looks_;                   ///< statistics of these columns
   std::vector<std::string> missing_;
 };
 

@@ -11,22 +11,23 @@ namespace mpm {
 
 /// What can be guessed about a study from a file of records.
 struct DataSketch {
-  std::string file;   ///< its name
-  std::string table;  ///< [data] as the text of a study file, each guess with a comment that calls it one
-  double step = 0.0;  ///< median time between two rows, time unit of the plant; 0: the file has no stamps
-  std::map<std::string, double> noise;         ///< of each CV that has a column: standard deviation
-  std::map<std::string, double> spread;        ///< of each variable that has a column: standard deviation
+  std::string file;   ///< name of the file
+  std::string table;  ///< [data] as text of a study file; a comment marks each guess
+  double step = 0.0;  ///< median time between two rows, in the time unit of the plant; 0: no stamps
+  std::map<std::string, double> noise;         ///< standard deviation of the noise of each CV with a column
+  std::map<std::string, double> spread;        ///< standard deviation of each variable with a column
   std::map<std::string, std::string> rests;    ///< where each MV spends its time, in words
-  std::map<std::string, std::size_t> periods;  ///< of each CV and MD that is held in between: rows
+  std::map<std::string, std::size_t> periods;  ///< rows between two values of each CV and MD that is held
 };
 
-/// Looks at a file for a plant: the column of each variable (its name, one that has it in its name, or the
-/// nearest one), the period, the operating point (means) and the noise
+/// Examines a file of records for a plant. Finds the column of each variable (the one with its name, one with
+/// the name in its heading, or the one with the nearest heading), the period, the operating point (means) and
+/// the noise
 ///
 ///   sigma = 1.4826 median |y(k) - 2 y(k-1) + y(k-2)| / sqrt 6
 ///
-/// which slow moves hardly change. A plant without variables gets a list of the columns and what they look
-/// like. Errors: those of stamped_rows().
+/// which slow moves hardly change. For a plant without variables it lists the columns and describes their
+/// values. Errors: those of stamped_rows().
 DataSketch data_sketch(const PlantModel& plant, RecordColumns file);
 
 }  // namespace mpm

@@ -28,7 +28,7 @@ constexpr int kMonths = 12;
 constexpr std::array<const char*, kMonths> kEnglishMonths{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
                                                           "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
 
-/// What a word of a date can be; a word can be several.
+/// The meaning of a word of a date. A word can have several.
 struct DateMeaning {
   int month = 0;  ///< 1 to 12; 0: none
   bool weekday = false, filler = false;
@@ -40,12 +40,12 @@ bool is_letter(UChar32 c) {
          u_charType(c) == U_COMBINING_SPACING_MARK;
 }
 
-/// What may stand within a word and counts for nothing: blanks, points, signs of the direction.
+/// Tells whether a character may be within a word without meaning: blanks, points, marks of text direction.
 bool is_silent(UChar32 c) {
   return c == '.' || c == '\'' || u_isUWhiteSpace(c) != 0 || u_charType(c) == U_FORMAT_CHAR;
 }
 
-/// A character without its case and accents; nothing of a mark.
+/// Appends a character without its case and accents. A mark alone appends nothing.
 void append_folded(UnicodeString& key, UChar32 c) {
   constexpr UChar32 kDotlessI = 0x131;
   UErrorCode error = U_ZERO_ERROR;
@@ -58,7 +58,7 @@ void append_folded(UnicodeString& key, UChar32 c) {
       key.append(part);
 }
 
-/// The value of a digit of any script; -1 of another character.
+/// Returns the value of a digit in any script; -1 for any other character.
 int digit_of(UChar32 c) {
   return u_charDigitValue(c);
 }
@@ -80,7 +80,7 @@ UnicodeString key_of_name(const UnicodeString& name) {
 }  // namespace
 
 class DateLanguage {
-  /// A word of a text: [begin, end) and what it means; null: none of this language.
+  /// A word of a text, at [begin, end), and its meaning; null: the language does not have it.
   struct Found {
     int32_t begin, end;
     const DateMeaning* meaning;
@@ -110,7 +110,7 @@ class DateLanguage {
   void add_names_of(const DateLanguage& other) {
     names_.insert(names_.end(), other.names_.begin(), other.names_.end());
   }
-  /// What its words mean in any of both.
+  /// Adds the words of another language, so that each word has its meanings in both.
   void add_words_of(const DateLanguage& other) {
     for (const auto& [key, meaning] : other.words_) {
       DateMeaning& own = words_[key];
@@ -119,14 +119,14 @@ class DateLanguage {
       own.weekday = own.weekday || meaning.weekday;
     }
   }
-  /// Does a word say the month, the day of the week or which half of the day it is?
+  /// Tells whether a word means a month, a day of the week, or a half of the day.
   bool tells(const UnicodeString& text) const {
     const std::vector<Found> found = words_in(text);
     return std::any_of(found.begin(), found.end(), [](const Found& word) {
       return word.meaning->month > 0 || word.meaning->half != nullptr || word.meaning->weekday;
     });
   }
-  /// Its words as one text.
+  /// Returns all words as one text, by which languages are compared.
   std::string signature() const {
     std::string text;
     for (const auto& [key, meaning] : words_) {
@@ -137,7 +137,7 @@ class DateLanguage {
     return text;
   }
 
-  /// The text with the words of English.
+  /// Returns the text with English words.
   std::string english(const UnicodeString& text) const;
 
  private:
@@ -154,7 +154,7 @@ class DateLanguage {
         words_[key].weekday = true;
   }
 
-  /// The letters of its pattern of a long date and a time that stand for nothing.
+  /// Takes the words without a meaning from the pattern of a long date and a time.
   void take_fillers(const icu::Locale& locale) {
     const std::unique_ptr<icu::DateFormat> format(
         icu::DateFormat::createDateTimeInstance(icu::DateFormat::kLong, icu::DateFormat::kShort, locale));
@@ -179,7 +179,7 @@ class DateLanguage {
     }
   }
 
-  /// Three letters or more of a month that begin no other one.
+  /// Adds the beginnings of months, of three or more letters, that no other month has.
   void take_beginnings() {
     constexpr int32_t kFewest = 3;
     std::map<UnicodeString, std::set<int>> beginnings;
@@ -199,7 +199,7 @@ class DateLanguage {
   std::map<UnicodeString, DateMeaning> words_;
 };
 
-/// The longest word that begins here.
+/// Returns the longest word that begins at `begin`.
 DateLanguage::Found DateLanguage::longest_at(const UnicodeString& text, int32_t begin) const {
   constexpr int32_t kLongestKey = 40;
   Found found{begin, begin, nullptr};
@@ -217,7 +217,7 @@ DateLanguage::Found DateLanguage::longest_at(const UnicodeString& text, int32_t 
       found = {begin, next, &word->second};
     at = next;
   }
-  // A point behind a word that is cut short belongs to it.
+  // A point after an abbreviated word belongs to it.
   if (found.meaning != nullptr && found.end < text.length() && text.char32At(found.end) == '.')
     ++found.end;
   return found;
@@ -240,7 +240,7 @@ std::vector<DateLanguage::Found> DateLanguage::words_in(const UnicodeString& tex
     while (at < text.length() && (digit ? digit_of(text.char32At(at)) >= 0 : is_letter(text.char32At(at))))
       at = text.moveIndex32(at, 1);
   }
-  // Of two words that could be the month ("mar 5 mar 2024"), the one that can be a day of the week is one.
+  // If two words could be the month ("mar 5 mar 2024"), the one that can be a day of the week is one.
   const auto months =
       std::count_if(found.begin(), found.end(), [](const Found& word) { return word.meaning->month > 0; });
   static constexpr DateMeaning kWeekday{.month = 0, .weekday = true, .filler = false, .half = nullptr};
@@ -255,7 +255,7 @@ std::vector<DateLanguage::Found> DateLanguage::words_in(const UnicodeString& tex
 std::string DateLanguage::english(const UnicodeString& text) const {
   std::string made, half;
   bool has_colon = false;
-  const auto append = [&made](std::string_view more) {  // one blank in place of several, none before a comma
+  const auto append = [&made](std::string_view more) {  // merges blanks, drops those before a comma
     if (more.front() == ',')
       made.erase(made.find_last_not_of(' ') + 1);
     if (more.front() == ' ' && (made.empty() || made.back() == ' '))
@@ -296,11 +296,11 @@ std::string DateLanguage::english(const UnicodeString& text) const {
     else if (meaning.weekday && made.empty())
       append("Mon");
     else if (has_month && !has_colon)
-      append(" ");  // in a date in words; elsewhere it may be another word of another language
+      append(" ");  // part of a date in words; in other cells it may be a word of another language
     else
       copy(word.begin, word.end);
     if (!half.empty() && has_colon)
-      append_half();  // else it stands in front of its time
+      append_half();  // otherwise it comes before its time
   }
   copy(at, text.length());
   if (!half.empty())
@@ -311,7 +311,7 @@ std::string DateLanguage::english(const UnicodeString& text) const {
 
 namespace {
 
-/// Those of CLDR, each kind of words once.
+/// Returns all languages of CLDR; languages with the same words are one.
 const std::vector<DateLanguage>& all_date_languages() {
   static const std::vector<DateLanguage> kAll = [] {
     std::vector<DateLanguage> all;
@@ -331,7 +331,7 @@ const std::vector<DateLanguage>& all_date_languages() {
   return kAll;
 }
 
-/// The words of all of them.
+/// Returns the words of all languages together.
 const DateLanguage& any_date_language() {
   static const DateLanguage kAny = [] {
     DateLanguage any;
@@ -342,7 +342,7 @@ const DateLanguage& any_date_language() {
   return kAny;
 }
 
-/// What a cell may say, in UTF-8 or in the code pages of Windows.
+/// Returns the possible texts of a cell: in UTF-8, or else in the code pages of Windows.
 std::vector<UnicodeString> decoded(std::string_view cell) {
   static constexpr std::array kCodePages{"windows-1252", "windows-1250", "windows-1251", "windows-1253",
                                          "windows-1254", "windows-1255", "windows-1256", "windows-1257",

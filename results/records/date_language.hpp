@@ -7,22 +7,22 @@
 
 namespace mpm {
 
-/// The words of the dates of one language of CLDR, or of several in which they are the same.
+/// The date words of one language of CLDR, or of several languages that share the same words.
 class DateLanguage;
 
-/// Those of CLDR, each kind of words once.
+/// Returns all languages of CLDR; languages with the same words are one.
 const std::vector<const DateLanguage*>& date_languages();
 
-/// Such as "it" or "pt_BR".
+/// Returns names such as "it" or "pt_BR".
 const std::vector<std::string>& language_names(const DateLanguage& language);
 
-/// A cell with English words instead of those of the language, by the first code page in which it can be
-/// read; empty: by none.
+/// Returns a cell with English words in place of those of the language. Tries the code pages in turn and
+/// takes the first in which `reads` can read the cell; empty if there is none.
 std::string read_in(const DateLanguage& language, const std::string& cell,
                     const std::function<bool(const std::string&)>& reads);
 
-/// Does a word of the cell say the month, the day of the week or which half of the day it is, in any
-/// language?
+/// Tells whether a word of the cell means a month, a day of the week, or a half of the day (AM or PM) in any
+/// language.
 bool has_date_words(std::string_view cell);
 
 }  // namespace mpm

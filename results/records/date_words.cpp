@@ -27,7 +27,7 @@ bool may_have_words(std::string_view cell) {
          });
 }
 
-/// The first cell of each kind: cells that differ in their ASCII digits alone are of one.
+/// Returns the first cell of each kind. Cells that differ only in their ASCII digits are of one kind.
 std::vector<std::string> kinds_of(const std::vector<std::string>& cells) {
   constexpr std::size_t kMostKinds = 100;
   std::set<std::string> shapes;
@@ -44,9 +44,9 @@ std::vector<std::string> kinds_of(const std::vector<std::string>& cells) {
   return kinds;
 }
 
-/// What some languages make of the kinds of cells.
+/// A reading of the kinds of cells, and the languages that give it.
 struct DateReading {
-  std::vector<std::string> english;  ///< of each kind; empty: not read
+  std::vector<std::string> english;  ///< of each kind, in English; empty: not read
   std::vector<const DateLanguage*> languages;
 
   std::size_t regions() const {
@@ -57,7 +57,7 @@ struct DateReading {
   }
 };
 
-/// The readings of most cells.
+/// Returns the readings that read the most cells.
 std::vector<DateReading> readings_of(const std::vector<std::string>& kinds,
                                      const std::function<bool(const std::string&)>& reads) {
   std::size_t most = 1;
@@ -102,7 +102,7 @@ std::vector<DateReading> readings_of(const std::vector<std::string>& kinds,
                   language_names(*readings.front().languages.front()).front()));
 }
 
-/// The language of these cells; null: no language reads one.
+/// Returns the language of these cells; null if no language reads any.
 const DateLanguage* language_of(const std::vector<std::string>& kinds, const std::string& place,
                                 const std::function<bool(const std::string&)>& reads) {
   constexpr std::size_t kFarMore = 4;

@@ -8,23 +8,24 @@
 
 namespace mpm {
 
-/// Cells with dates in a language of CLDR, as written_date() reads them: names of months and days, words for
-/// before and after noon (also in front of the time), words between the parts ("2 de agosto de 2024") and
-/// digits become those of English. Capitals, accents and points count for nothing, and three letters or more
-/// of a month stand for it where no other month begins so. Bytes that are no UTF-8 are read in the code pages
-/// of Windows.
+/// Translates cells with dates in a language of CLDR into the form that written_date() reads. It puts English
+/// in place of names of months and days, words for before and after noon (also in front of the time), words
+/// between the parts ("2 de agosto de 2024") and digits. Capitals, accents and points do not matter. Three or
+/// more letters stand for a month if no other month begins with them. Bytes that are no UTF-8 are read in the
+/// code pages of Windows.
 ///
-/// `language` is a name such as "it" or "pt_BR"; empty: the one in which `reads` reads the most cells. Where
-/// languages differ on what a cell says, that of four times as many regions as all others together is taken.
-/// None where English reads all of them, and where no language reads one. Errors: InputError at `place` for a
-/// language that CLDR does not have, and where languages differ and nothing decides.
+/// `language` is a name such as "it" or "pt_BR". If it is empty, the language is used in which `reads` reads
+/// the most cells. If languages differ on the meaning of a cell, a meaning counts if at least four times as
+/// many regions have it as all others together. Returns none if English reads all cells, or if no language
+/// reads any. Errors: InputError at `place` if CLDR does not have the language, or if languages differ and
+/// nothing decides.
 std::optional<std::vector<std::string>> dates_in_english(
     const std::vector<std::string>& cells, const std::string& language, const std::string& place,
     const std::function<bool(const std::string&)>& reads);
 
-/// Is there a date in this cell, in any language?
+/// Tells whether the cell has a date, in any language.
 bool is_date(std::string_view cell);
-/// Is there a time of day without a date?
+/// Tells whether the cell has a time of day without a date.
 bool is_time_of_day(std::string_view cell);
 
 }  // namespace mpm

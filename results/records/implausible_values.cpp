@@ -10,13 +10,13 @@
 namespace mpm {
 namespace {
 
-constexpr double kTail = 0.05;  // of the values, on either side of the core
+constexpr double kTail = 0.05;  // share of the values on either side of the core
 constexpr double kGapOfFillers = 10.0;
 constexpr double kGapOfSpikes = 1000.0;
 constexpr std::size_t kLongestSpike = 5;
 constexpr double kLeastHuge = 1e20;
 
-/// Does a program write it for a missing value?
+/// Tells whether programs write this value for a missing one.
 bool is_filler(double value) {
   static constexpr std::array kOthers{999.25, 32767.0, 32768.0, 65535.0, 2147483647.0, 2147483648.0};
   const double size = std::abs(value);
@@ -28,7 +28,7 @@ bool is_filler(double value) {
   return size == nines;
 }
 
-/// A number that somebody would choose for a missing value: 100 and above, of one or two digits.
+/// Tells whether people would choose this number for a missing value: 100 and above, of one or two digits.
 bool is_round(double value) {
   constexpr double kLeastRound = 100.0;
   double digits = std::abs(value);
@@ -39,8 +39,8 @@ bool is_round(double value) {
   return digits < kLeastRound && digits == std::floor(digits);
 }
 
-/// Which values may stand for a missing one: those of programs, and of a signal that is measured round ones
-/// that come again.
+/// The values that may stand for a missing one: those that programs write and, if the signal is measured,
+/// round values that recur.
 class Fillers {
  public:
   Fillers(const std::vector<double>& values, bool measured) {
@@ -63,8 +63,7 @@ class Fillers {
       }
       first = end;
     }
-    constexpr std::ptrdiff_t kFewestKinds =
-        10;  // of values that change as measurements do, and are no levels
+    constexpr std::ptrdiff_t kFewestKinds = 10;  // fewer are levels, and no measurements
     if (kinds < kFewestKinds || again > others || 2 * most > others)
       rounds_.clear();
   }
@@ -81,11 +80,12 @@ struct Core {
   double lower, upper;
 
   double width() const { return upper - lower; }
-  /// From the core to the value; 0 within.
+  /// Distance from the core to the value; 0 within the core.
   double gap(double value) const { return std::max({lower - value, value - upper, 0.0}); }
 };
 
-/// Values that follow on, from the middle outwards.
+/// Returns the core, which grows from the middle outwards as long as the next value follows without a large
+/// gap.
 Core core_of(std::vector<double> sorted, double lower, double upper) {
   std::sort(sorted.begin(), sorted.end());
   const auto tail = static_cast<std::size_t>(kTail * static_cast<double>(sorted.size()));
@@ -121,7 +121,7 @@ std::vector<std::size_t> implausible_rows(const std::vector<double>& values, dou
   const Core core = core_of(std::move(sure), lower, upper);
   const bool has_width = core.width() > 0.0;
   std::vector<std::size_t> rows, spike;
-  bool inside = false;  // the last value that is no filler was of the core
+  bool inside = false;  // the last value that is no filler was in the core
   for (std::size_t row = 0; row < values.size(); ++row) {
     const double value = values[row];
     if (std::isnan(value))

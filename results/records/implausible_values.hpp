@@ -5,19 +5,20 @@
 
 namespace mpm {
 
-/// Rows of a recorded signal whose values cannot be measurements; NaN is no value.
+/// Returns the rows of a recorded signal whose values cannot be measurements. NaN is no value.
 ///
-/// The core of a signal are its values between the quantiles of 5 and 95 %, and all that follow on without a
-/// large gap; `lower` and `upper`, its hard limits, belong to it where both are finite. Beyond it are
+/// The core of a signal is the range of its values between the quantiles of 5 and 95 %, and of all values
+/// that follow without a large gap. The hard limits `lower` and `upper` also belong to the core if both are
+/// finite. Implausible values lie outside the core:
 ///
 /// - fillers: values that programs write for a missing one (-9999 and other nines, -999.25, the ends of
-///   integers of 16 and 32 bits, 1e20 and above), when the gap to the core is 10 times as wide as the core;
-///   of a signal that is `measured`, and has no few levels, also round values (100 and above, of one or two
-///   digits) that stand there twice or more;
-/// - spikes: any other values, when the gap is 1000 times as wide as the core, of at most 5 rows between two
-///   of the core.
+///   integers of 16 and 32 bits, 1e20 and above), if the gap to the core is more than 10 times the width of
+///   the core. If the signal is `measured` and has more than a few levels, round values (100 and above, of
+///   one or two digits) are fillers as well if they occur at least twice;
+/// - spikes: any other values, if the gap is more than 1000 times the width of the core, in at most 5 rows
+///   between two rows of the core.
 ///
-/// A core without width, as of a valve that moves seldom, has fillers only.
+/// A core without width, such as that of a valve that moves seldom, has fillers but no spikes.
 std::vector<std::size_t> implausible_rows(const std::vector<double>& values, double lower, double upper,
                                           bool measured = false);
 

@@ -22,12 +22,12 @@ namespace {
 
 constexpr std::array kTimesOfMatlab{"time", "timestamp", "datetime", "date", "t"};
 
-/// A variable with MATLAB's dimensions.
+/// A variable with its dimensions in MATLAB.
 struct MatlabArray {
   std::string name;
   bool text = false;
   std::size_t rows = 0, columns = 0;
-  std::vector<std::string> cells;  ///< column by column; a text a row of characters, in one column
+  std::vector<std::string> cells;  ///< column by column; characters: one column, a text per row
 
   bool vector() const { return rows == 1 || columns == 1; }
   std::size_t length() const { return vector() ? std::max(rows, columns) : rows; }
@@ -83,7 +83,7 @@ class MatlabReader {
   }
 
  private:
-  /// `prefix` stands before names that others have as well.
+  /// `prefix` goes before names that occur elsewhere as well.
   void take_group(const Hdf5Group& group, const std::string& prefix) {
     for (const std::string& name : group.variables())
       take(group, name, prefix);
@@ -100,7 +100,7 @@ class MatlabReader {
                                       : "it has not two dimensions");
     MatlabArray array;
     array.name = names_.insert(name).second ? name : prefix + name;
-    array.rows = shape[1];  // MATLAB's first dimension is the last of HDF5
+    array.rows = shape[1];  // MATLAB's first dimension is HDF5's last
     array.columns = shape[0];
     if (group.is_reference(name)) {
       if (kind != "cell" || !take_texts(group, name, array))
@@ -120,7 +120,7 @@ class MatlabReader {
     arrays_.push_back(std::move(array));
   }
 
-  /// A cell array of texts; false when it holds something else.
+  /// Reads a cell array of texts; returns false if it holds anything else.
   static bool take_texts(const Hdf5Group& group, const std::string& name, MatlabArray& array) {
     array.text = true;
     const std::vector<std::string> paths = group.references(name);
@@ -131,7 +131,7 @@ class MatlabReader {
         const bool empty = group.number_attribute(path, "MATLAB_empty").value_or(0.0) != 0.0;
         array.cells.push_back(empty ? "" : text_of_codes(group.numbers(path)));
       }
-    } catch (const ArchiveError&) {  // a group: a struct
+    } catch (const ArchiveError&) {  // a group, so it is a struct
       return false;
     }
     return true;
@@ -167,7 +167,7 @@ class MatlabReader {
     return most;
   }
 
-  /// The names of so many columns, which is not the number of rows either.
+  /// Finds an array with as many texts as there are columns, unless that is also the number of rows.
   const MatlabArray* names_of(std::size_t columns, std::size_t rows) const {
     const auto found = std::find_if(arrays_.begin(), arrays_.end(), [&](const MatlabArray& array) {
       return array.text && array.vector() && array.cells.size() == columns && columns != rows;

@@ -11,10 +11,11 @@ namespace mpm {
 
 inline constexpr std::size_t kMatlabHeading = 512;  ///< bytes before HDF5 in a MAT-file of MATLAB 7.3
 
-/// Does a file begin as a MAT-file of MATLAB 7.3?
+/// Tells whether a file begins like a MAT-file of MATLAB 7.3.
 bool is_matlab(std::string_view content);
 
-/// The variables of a MAT-file of MATLAB 7.3 (save -v7.3), and the fields of its scalar structs, as columns:
+/// Returns the variables of a MAT-file of MATLAB 7.3 (save -v7.3), and the fields of its scalar structs, as
+/// columns:
 ///
 /// | variable                             | columns                                                   |
 /// |--------------------------------------|-----------------------------------------------------------|
@@ -24,10 +25,11 @@ bool is_matlab(std::string_view content);
 /// | N x n characters                     | x, a text a row                                           |
 /// | others                               | none                                                      |
 ///
-/// N is the length of the variable `time`; empty: of one with a usual name, otherwise the largest number of
-/// rows. Fields of a struct have their own names. NaN is an empty cell.
+/// N is the length of the variable `time`. If `time` is empty, N is the length of the variable with a usual
+/// name for time, or else the largest number of rows. Fields of a struct keep their own names. NaN becomes an
+/// empty cell.
 ///
-/// Errors: InputError for a file without such a variable; ArchiveError for one that HDF5 cannot read.
+/// Errors: InputError if the file has no such variable; ArchiveError if HDF5 cannot read it.
 RecordColumns matlab_columns(const Hdf5Group& root, const std::string& file, const std::string& time);
 
 }  // namespace mpm

@@ -35,11 +35,11 @@ constexpr double kMicrosecond = 1e-6;  // s
 constexpr std::string_view kSince = " since ";
 constexpr double kEarliest = -12212553600.0;                // 1583-01-01 in s since 1970
 constexpr double kLatest = 253402300800.0;                  // 10000-01-01
-constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // of 8 bytes, that it becomes
+constexpr std::size_t kMostNumbers = std::size_t{1} << 28;  // of 8 bytes each, in the answer
 constexpr const char* kAllowed =
     "a netCDF-4 file of records, one of MATLAB 7.3, or a CSV file (docs/own_records.md)";
 
-/// Seconds in a unit of CF; none of another one. Months and years have no fixed length.
+/// Returns the seconds in a unit of CF; none for any other unit. Months and years have no fixed length.
 std::optional<double> seconds_in(std::string unit) {
   unit = in_lower_case(std::move(unit));
   if (unit.size() > 2 && unit.back() == 's')
@@ -53,7 +53,7 @@ std::optional<double> seconds_in(std::string unit) {
   return std::nullopt;
 }
 
-/// A date in which each number has two digits at least, as people write 1900-1-1 0:0:0 here.
+/// Pads each number of a date to two digits, because people write 1900-1-1 0:0:0 here.
 std::string with_two_digits(const std::string& date) {
   const auto is_digit = [&date](std::size_t at) {
     return at < date.size() && std::isdigit(static_cast<unsigned char>(date[at])) != 0;
@@ -66,7 +66,7 @@ std::string with_two_digits(const std::string& date) {
   return padded;
 }
 
-/// The stamp of a time in s since 1970, with so many digits behind the point.
+/// Returns the stamp of a time in s since 1970, with `digits` decimals of a second.
 std::string utc_text(double seconds, int digits) {
   const double parts = digits == 3 ? 1e3 : 1e6;  // of a second
   const double rounded = std::round(seconds * parts), whole = std::floor(rounded / parts);
@@ -140,7 +140,7 @@ class NetcdfReader {
                        std::string(without_blanks(units.substr(since + kSince.size()))));
   }
 
-  /// The date that times are counted from, in s since 1970: of the calendar that clocks have.
+  /// Returns the date from which times are counted, in s since 1970, in the calendar that clocks use.
   static double beginning(const std::string& place, const std::string& date) {
     constexpr int kFirstYear = 1583;  // of the Gregorian calendar
     int year = 0;
@@ -160,7 +160,7 @@ class NetcdfReader {
     return begin.times.front();
   }
 
-  /// Times in CF units, "UNIT since DATE".
+  /// Converts times in CF units, "UNIT since DATE".
   std::vector<std::string> dates(const std::string& unit, const std::string& date) const {
     const std::string place = fmt::format("{}: units of '{}'", columns_.file, time_);
     const std::optional<double> seconds = seconds_in(unit);
@@ -186,7 +186,7 @@ class NetcdfReader {
     return stamps;
   }
 
-  /// The numbers of a variable, as they are meant.
+  /// Returns the numbers of a variable after its fill values, scale and offset are applied.
   std::vector<std::string> number_cells(const std::string& variable) const {
     const auto attribute = [&](const char* name) { return root_.number_attribute(variable, name); };
     const std::optional<double> fill = attribute("_FillValue"), missing = attribute("missing_value");
@@ -214,7 +214,7 @@ class NetcdfReader {
     columns_.columns.push_back(std::move(cells));
   }
 
-  /// The coordinates of a dimension, as texts.
+  /// Returns the names of the coordinates of a dimension, or their numbers if it has no names.
   std::vector<std::string> coordinates(const std::string& dimension, std::size_t length) const {
     if (has(dimension) && root_.is_text(dimension) && root_.shape(dimension) == std::vector{length})
       return root_.texts(dimension);
@@ -255,7 +255,7 @@ class NetcdfReader {
     }
   }
 
-  /// Null of one that gives columns.
+  /// Returns why a variable gives no columns; null if it does.
   const char* why_no_column(const std::string& variable, const std::vector<std::string>& dimensions,
                             const std::vector<std::size_t>& shape) {
     if (dimensions.empty() || dimensions.back() != dimension_)
@@ -268,7 +268,7 @@ class NetcdfReader {
                : nullptr;
   }
 
-  /// A text a sample, of single characters along the last dimension.
+  /// Adds one text per sample, made of single characters along the last dimension.
   void add_characters(const std::string& variable, std::size_t length) {
     const std::vector<std::string> characters = root_.texts(variable);
     if (std::any_of(characters.begin(), characters.end(), [](const auto& each) { return each.size() > 1; })) {
@@ -286,15 +286,15 @@ class NetcdfReader {
   Hdf5Group root_;
   std::vector<std::string> variables_;
   RecordColumns columns_;
-  std::string time_;       ///< variable; empty: none, rows are samples
-  std::string dimension_;  ///< along the time
-  std::string along_;      ///< the variable that has it
+  std::string time_;       ///< time variable; empty: none, rows are samples
+  std::string dimension_;  ///< dimension of the time
+  std::string along_;      ///< the variable that has this dimension
   std::size_t samples_ = 0;
   std::size_t cells_ = 0;
   bool several_loops_ = false;
 };
 
-/// What is in a file, or why it is refused.
+/// The content of a file, or why it is refused.
 struct NetcdfAnswer {
   std::string refused;
   RecordColumns columns;
@@ -317,7 +317,7 @@ NetcdfAnswer read_file(std::vector<std::byte>& content, const std::string& file,
   }
 }
 
-/// Bytes as a forked service answers them: their number, and as many numbers as hold them.
+/// Packs bytes as a forked service returns them: first how many, then the numbers that hold them.
 std::vector<double> as_numbers(const std::string& bytes) {
   std::vector<double> numbers(1 + (bytes.size() + sizeof(double) - 1) / sizeof(double));
   numbers.front() = static_cast<double>(bytes.size());
@@ -332,7 +332,7 @@ std::string_view as_bytes(const std::vector<double>& numbers) {
   return {reinterpret_cast<const char*>(numbers.data() + 1), static_cast<std::size_t>(numbers.front())};
 }
 
-/// Both ways, beside the name of the file.
+/// Writes or reads the columns, except for the name of the file.
 template <class Stream, class Columns>
 void transfer_columns(Stream& stream, Columns& columns) {
   std::size_t count = columns.names.size(), rows = columns.rows();
@@ -364,7 +364,7 @@ void transfer_columns(Stream& stream, Columns& columns) {
       transfer(stream, cell);
 }
 
-/// What the process has read, which a file that HDF5 stumbles over may have spoilt.
+/// Unpacks what the process has read. HDF5 may have corrupted it if the file is damaged.
 RecordColumns columns_of(std::string_view bytes, const std::string& file) {
   ByteReader reader(bytes);
   NetcdfAnswer answer;
@@ -387,7 +387,7 @@ bool is_hdf5(std::string_view content) {
 
 RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& file, const std::string& time,
                              double time_limit) {
-  // The library frees and reads what is not its own when a file is damaged in the right place.
+  // On some damaged files the library frees and reads memory that it does not own.
   ForkedService reader(
       [&](const auto&) {
         const NetcdfAnswer answer = read_file(content, file, time);
@@ -402,7 +402,7 @@ RecordColumns netcdf_columns(std::vector<std::byte> content, const std::string& 
     return columns_of(as_bytes(answer), file);
   } catch (const ForeignFailure& failure) {
     throw InputError(file, fmt::format("a file that HDF5 cannot read ({})", failure.what()), kAllowed);
-  } catch (const std::runtime_error&) {  // of its bytes
+  } catch (const std::runtime_error&) {  // the bytes of the answer are invalid
     throw InputError(file, "a file that HDF5 cannot read (its process gave no valid answer)", kAllowed);
   }
 }

@@ -17,7 +17,7 @@ constexpr std::uint32_t kLeastSeverity = 1U << 30U;
 constexpr std::uint32_t kDaCodes = 1U << 16U, kDaQuality = 0xC0;
 constexpr double kCodes = 4294967296.0;  // 2^32
 
-/// The number in a cell, which may be hexadecimal.
+/// Returns the number in a cell, which may be hexadecimal.
 std::optional<double> code_in(const RecordColumns& file, const std::string& cell) {
   if (!cell.starts_with("0x") && !cell.starts_with("0X"))
     return file.number(cell);
@@ -27,7 +27,7 @@ std::optional<double> code_in(const RecordColumns& file, const std::string& cell
   return error == std::errc() && last == end ? std::optional<double>(code) : std::nullopt;
 }
 
-/// The code as 32 bits; none for what is none.
+/// Returns the code as 32 bits; none if it is no such code.
 std::optional<std::uint32_t> bits_in(const RecordColumns& file, const std::string& cell) {
   const std::optional<double> code = code_in(file, cell);
   if (!code || *code != std::floor(*code) || *code < -kCodes / 2 || *code >= kCodes)

@@ -22,7 +22,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kWorthSaying = 0.05;  // share of missing samples
+constexpr double kWorthSaying = 0.05;  // share of missing samples above which there is a warning
 
 std::string percent(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
@@ -32,7 +32,7 @@ double missing_share(const Eigen::RowVectorXd& values) {
   return values.array().isNaN().cast<double>().mean();
 }
 
-/// Columns that a file of records of this study may have.
+/// Returns the names of columns that a file of records of this study may have.
 std::vector<std::string> wanted_names(const Study& study) {
   std::vector<std::string> names;
   const auto add = [&](const std::vector<PlantModel::Variable>& variables, const char* prefix) {
@@ -96,7 +96,7 @@ class RecordReader {
   }
 
  private:
-  /// One row a variable: of(name) of each.
+  /// Returns a matrix with one row per variable: of(name).
   template <class Of>
   Eigen::MatrixXd group(const std::vector<PlantModel::Variable>& variables, Of of) const {
     Eigen::MatrixXd signals(static_cast<Eigen::Index>(variables.size()), grid_.samples());
@@ -127,7 +127,7 @@ class RecordReader {
     return grid_.held(signal);
   }
 
-  /// A signal that belongs to a variable and may be left out.
+  /// Reads a signal that belongs to a variable and may be left out.
   Eigen::RowVectorXd companion(const std::string& variable, const DataOptions::Names& tags, const char* key,
                                const char* exported = "") {
     const auto tag = tags.find(variable);
@@ -139,7 +139,8 @@ class RecordReader {
                     : Eigen::RowVectorXd::Constant(grid_.samples(), kNaN);
   }
 
-  /// 1 where operators have a variable, 0 elsewhere; empty if the file says it of none.
+  /// Returns 1 where operators have a variable, 0 elsewhere; empty if the study names no column of modes for
+  /// them.
   Eigen::MatrixXd off(const std::vector<PlantModel::Variable>& variables) {
     const auto has_mode = [this](const PlantModel::Variable& each) { return data_.mode.contains(each.name); };
     if (std::none_of(variables.begin(), variables.end(), has_mode))
@@ -161,7 +162,8 @@ class RecordReader {
     });
   }
 
-  /// Signals beside those of the loop, in units of their own: a regression looks at their moves only.
+  /// Reads the signals besides those of the loop. They keep their own units, because a regression uses only
+  /// their moves.
   void read_candidates() {
     record_.candidate_names = data_.candidates;
     record_.candidates.resize(static_cast<Eigen::Index>(data_.candidates.size()), grid_.samples());
@@ -177,7 +179,8 @@ class RecordReader {
     }
   }
 
-  /// At which samples no variable is the controller's: its own column says so, or operators have every MV.
+  /// Tells at which samples the controller has no variable: its own column says so, or operators have every
+  /// MV.
   Eigen::Array<bool, 1, Eigen::Dynamic> without_controller() const {
     Eigen::Array<bool, 1, Eigen::Dynamic> off =
         Eigen::Array<bool, 1, Eigen::Dynamic>::Constant(grid_.samples(), false);
@@ -188,7 +191,7 @@ class RecordReader {
     return off;
   }
 
-  /// A sample without the controller is one of which nothing was recorded: it counts nowhere.
+  /// Removes the samples without the controller: they count nowhere, as if nothing had been recorded.
   void leave_out_without_controller() {
     const auto off = without_controller();
     const double share = off.cast<double>().mean();

@@ -25,14 +25,14 @@ bool is_word_of(std::string_view word, const std::array<std::string_view, size>&
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Without its last part if that is one of a value: "xd" of "xd.pv".
+/// Removes the last part of a name if it stands for a value: "xd" for "xd.pv".
 std::string_view without_value_word(std::string_view name) {
   const std::size_t at = name.find_last_of(kBetween);
   return at != std::string_view::npos && is_word_of(name.substr(at + 1), kValueWords) ? name.substr(0, at)
                                                                                       : name;
 }
 
-/// Does this name say the quality of that one, both in small letters?
+/// Tells whether `name` means the quality of `value`. Both are in small letters.
 bool is_quality_of(std::string_view name, std::string_view value) {
   const std::size_t last = name.find_last_of(kBetween), first = name.find_first_of(kBetween);
   return last != std::string_view::npos &&
@@ -70,7 +70,7 @@ bool are_qualities(const RecordColumns& file, std::size_t column) {
     (is_opc_code(file, cell) ? any_code : any_word) = true;
     any_good = any_good || is_good_opc(file, cell, codes);
   }
-  return any_good && any_code != any_word;  // words, or codes
+  return any_good && any_code != any_word;  // either words or codes
 }
 
 std::optional<std::size_t> column_beside(const RecordColumns& file, std::size_t column,

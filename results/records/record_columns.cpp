@@ -33,7 +33,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// One to three digits, then groups of three with this sign before each, then perhaps a fraction.
+/// Tells whether a number has one to three digits, then groups of three with this sign before each, then
+/// perhaps a fraction.
 bool is_grouped(std::string_view cell, char group, char decimal) {
   constexpr std::size_t kDigits = 3;
   if (cell.starts_with('+') || cell.starts_with('-'))
@@ -42,7 +43,7 @@ bool is_grouped(std::string_view cell, char group, char decimal) {
   const std::string_view fraction = cell.substr(std::min(whole.size() + 1, cell.size()));
   const std::size_t first = whole.find(group);
   if (first == 0 || first > kDigits || !std::all_of(fraction.begin(), fraction.end(), is_digit))
-    return false;  // std::string_view::npos among them
+    return false;  // also if there is no sign: npos
   if ((whole.size() - first) % (kDigits + 1) != 0)
     return false;
   for (std::size_t at = 0; at < whole.size(); ++at)
@@ -51,7 +52,7 @@ bool is_grouped(std::string_view cell, char group, char decimal) {
   return true;
 }
 
-/// Takes out what stands between thousands: `group`, where the file has one, a blank of any kind, or '.
+/// Removes the signs between thousands: `group`, if the file has one, a blank of any kind, or '.
 void drop_groups(std::string& cell, char decimal, char group) {
   if (cell.find_first_not_of("+-0123456789.,eE") == std::string::npos) {
     if (group != '\0' && cell.find(group) != std::string::npos && is_grouped(cell, group, decimal))

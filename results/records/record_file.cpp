@@ -19,7 +19,7 @@ constexpr const char* kUnpack = "the file in it: unpack it first";
 constexpr const char* kByPandas =
     "a CSV file, or a DataFrame: pandas reads it, and mpmbench.assess() takes it (docs/python.md)";
 
-/// A format that people bring and that is not read here: how its files begin, its name, and what to do.
+/// A format that people bring but that is not read here: how its files begin, its name, and what to do.
 struct OtherFormat {
   std::string_view begins, name, allowed;
 };

@@ -9,12 +9,12 @@
 
 namespace mpm {
 
-/// The columns of a CSV text of records, as [data] says: parse_csv() with the numbers as the file writes
-/// them.
+/// Returns the columns of a CSV text of records as [data] says: parse_csv() with numbers in the form of the
+/// file.
 RecordColumns csv_record_columns(std::string_view text, const std::string& file, const DataOptions& data);
 
-/// The columns of a file of records: CSV, netCDF-4 (netcdf_columns()) or MATLAB 7.3 (matlab_columns()).
-/// Errors: theirs, and InputError for a file that cannot be read.
+/// Returns the columns of a file of records: CSV, netCDF-4 (netcdf_columns()) or MATLAB 7.3
+/// (matlab_columns()). Errors: those of these functions, and InputError if the file cannot be read.
 RecordColumns load_record_columns(const std::filesystem::path& path, const DataOptions& data);
 
 }  // namespace mpm

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kMostSamples = 1e6;
 
-/// Time units of the plant in one unit of the stamps.
+/// Returns the length of one unit of the stamps in time units of the plant.
 double plant_units_in(const std::string& of_stamps, const std::string& of_plant, const std::string& file) {
   if (of_stamps.empty() || of_stamps == of_plant)
     return 1.0;
@@ -56,7 +56,7 @@ std::vector<std::string> SampleGrid::stamps() const {
   return stamps;
 }
 
-/// A period of data.NAME, in stamps as the file has them, or dates.
+/// Returns the ends of a period in data.NAME, which are stamps as in the file, or dates.
 std::pair<double, double> SampleGrid::stamps_of(const char* key,
                                                 const std::vector<std::string>& period) const {
   const std::string place = fmt::format("data.{}", key);
@@ -69,7 +69,7 @@ std::pair<double, double> SampleGrid::stamps_of(const char* key,
   return {stamps.times[0], stamps.times[1]};
 }
 
-/// The sample to which a time belongs; -1 and samples_ of one before and behind all of them.
+/// Returns the sample to which a time belongs; -1 before all samples and samples_ after them.
 Eigen::Index SampleGrid::nearest_sample(double time) const {
   const double sample = std::floor((time - first_) / sample_ + 0.5);
   return static_cast<Eigen::Index>(std::clamp(sample, -1.0, static_cast<double>(samples_)));

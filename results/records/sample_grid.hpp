@@ -11,30 +11,31 @@
 
 namespace mpm {
 
-/// A signal of a file, one value a row; NaN: none.
+/// A signal of a file, one value per row; NaN: no value.
 using RowSignal = std::vector<double>;
 
-/// The samples of the controller in the rows of a file: sample k at first + k Ts, from the first stamp of the
-/// file or of data.period on.
+/// Places the samples of the controller among the rows of a file: sample k is at first + k Ts. The first
+/// sample is at the first stamp of the file, or of data.period.
 class SampleGrid {
  public:
-  /// Both must outlive it. Errors: InputError for a period that is none, and for fewer than two samples or
-  /// more than a million.
+  /// `study` and `rows` must outlive the grid. Errors: InputError for an invalid period, and for fewer than
+  /// two or more than a million samples.
   SampleGrid(const Study& study, const StampedRows& rows);
 
   Eigen::Index samples() const { return samples_; }
-  /// The stamps of the samples, for people.
+  /// Returns the stamps of the samples, for people.
   std::vector<std::string> stamps() const;
-  /// The samples of a period of [data], [first, end). Errors: InputError for a period that has none.
+  /// Returns the samples [first, end) of a period of [data]. Errors: InputError if the period has no samples.
   std::pair<Eigen::Index, Eigen::Index> between(const char* key,
                                                 const std::vector<std::string>& period) const;
 
-  /// Of the values within half a sample time: the mean, or the nearest (data.cv_resampling); NaN: none.
+  /// Returns the mean of the values within half a sample time of each sample, or the nearest of them
+  /// (data.cv_resampling); NaN if there are none.
   Eigen::RowVectorXd measured(const RowSignal& signal) const;
-  /// The last value up to half a sample time after each sample; what is missing at the start is the first
-  /// value.
+  /// Returns the last value up to half a sample time after each sample. Before the first value, that one is
+  /// used.
   Eigen::RowVectorXd held(const RowSignal& signal) const;
-  /// The value of the last row up to half a sample time after each sample, NaN where it has none.
+  /// Returns the value of the last row up to half a sample time after each sample; NaN if that row has none.
   Eigen::RowVectorXd of_last_row(const RowSignal& signal) const;
 
  private:
@@ -44,8 +45,8 @@ class SampleGrid {
 
   const DataOptions& data_;
   const StampedRows& rows_;
-  double first_ = 0.0;   ///< of the samples, unit of the stamps
-  double sample_ = 1.0;  ///< sample time, unit of the stamps
+  double first_ = 0.0;   ///< time of the first sample, in the unit of the stamps
+  double sample_ = 1.0;  ///< sample time, in the unit of the stamps
   Eigen::Index samples_ = 0;
 };
 

@@ -20,8 +20,8 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kWordsShown = 5;  // of a quality
-constexpr const char* kOpc = "opc";     // among the words of a good one
+constexpr std::size_t kWordsShown = 5;  // most words of a quality in a message
+constexpr const char* kOpc = "opc";     // stands for OPC among the words of a good quality
 
 bool is_one_of(const std::string& cell, const std::vector<std::string>& words) {
   return std::any_of(words.begin(), words.end(), [cell = in_lower_case(cell)](const std::string& word) {
@@ -33,7 +33,7 @@ std::string cut_name(const std::string& text) {
   return std::string(cut_utf8(text, kShownBytes));
 }
 
-/// What the names of a DataOptions group say about a variable; none: nothing.
+/// Returns what a DataOptions group says about a variable; none if it says nothing.
 template <class Value>
 std::optional<Value> said_of(const std::map<std::string, Value>& group, const std::string& variable) {
   const auto found = group.find(variable);
@@ -68,7 +68,7 @@ bool SignalReader::on_change(const std::string& variable) const {
   return std::find(names.begin(), names.end(), variable) != names.end();
 }
 
-/// An empty cell has what stands above it.
+/// Fills each empty cell with the one above it.
 void SignalReader::fill(std::size_t column) {
   std::vector<std::string>& cells = file_.columns[column];
   for (std::size_t row = 1; row < cells.size(); ++row)
@@ -80,7 +80,7 @@ RowSignal SignalReader::numbers(std::size_t column, const std::string& variable)
   return numbers(column, variable, false);
 }
 
-/// Is it `measured`: a CV or an MD itself?
+/// `measured` tells whether the column is a CV or an MD itself.
 RowSignal SignalReader::numbers(std::size_t column, const std::string& variable, bool measured) {
   const double zero = said_of(data_.operating_point, variable).value_or(0.0);
   const double scale = said_of(data_.scale, variable).value_or(1.0);
@@ -129,7 +129,7 @@ RowSignal SignalReader::variable(const std::string& name, const char* prefix) {
   return signal;
 }
 
-/// The hard limits of a variable; infinite without.
+/// Returns the hard limits of a variable; infinite if it has none.
 std::pair<double, double> SignalReader::hard_limits(const std::string& variable) const {
   std::pair<double, double> found{-kInfinity, kInfinity};
   const auto look = [&](const std::vector<PlantModel::Variable>& variables, const Limits& limits) {
@@ -142,7 +142,8 @@ std::pair<double, double> SignalReader::hard_limits(const std::string& variable)
   return found;
 }
 
-/// Takes out what cannot be measured. The signal is as recorded: it is there that -9999 means something.
+/// Removes values that cannot be measurements. The signal is still as recorded, because -9999 has its meaning
+/// only there.
 void SignalReader::drop_implausible(std::size_t column, const std::string& variable, bool measured,
                                     RowSignal& signal) {
   const double zero = said_of(data_.operating_point, variable).value_or(0.0);
@@ -169,7 +170,7 @@ bool SignalReader::has_numbers(std::size_t column) const {
 
 struct SignalReader::BadRows {
   std::vector<std::size_t> rows;
-  std::map<std::string, std::size_t> words;  ///< and in how many of the rows
+  std::map<std::string, std::size_t> words;  ///< words, each with its number of rows
 
   /// "'Bad' (20 rows), 'Out of range' (1 rows)"
   std::string text() const {
@@ -180,15 +181,14 @@ struct SignalReader::BadRows {
   }
 };
 
-/// An empty cell of a column that is named is none of the good ones.
+/// Finds the rows of bad quality. In a `named` column an empty cell is not good.
 SignalReader::BadRows SignalReader::bad_rows(std::size_t quality, const RowSignal& signal, bool named) const {
   const bool opc = is_one_of(kOpc, data_.good_quality);
   const OpcCodes codes = opc ? opc_codes(file_, quality) : OpcCodes::da;
   BadRows bad;
   for (std::size_t row = 0; row < signal.size(); ++row) {
     const std::string& cell = file_.columns[quality][row];
-    const bool nothing =
-        cell.empty() && (!named || std::isnan(signal[row]));  // the row is of other variables
+    const bool nothing = cell.empty() && (!named || std::isnan(signal[row]));  // a row of other variables
     if (nothing || is_word(cell, data_.good_quality) || (opc && is_good_opc(file_, cell, codes)))
       continue;
     bad.rows.push_back(row);
@@ -222,7 +222,7 @@ void SignalReader::drop_bad_quality(const std::string& variable, std::size_t col
         bad.rows.size(), signal.size(), fmt::join(data_.good_quality, ", "), bad.text()));
 }
 
-/// Of a column that nobody has named.
+/// Applies a quality column that was found and that nobody has named.
 void SignalReader::look_at_quality(const std::string& variable, std::size_t quality, RowSignal& signal) {
   if (on_change(variable))
     fill(quality);
@@ -275,7 +275,7 @@ void SignalReader::tell_beside(const std::string& variable, const char* prefix, 
                   name, variable, why, key, variable, name));
 }
 
-/// Has [data] another use for this column?
+/// Tells whether [data] uses this column for something else.
 bool SignalReader::is_named(std::size_t column) const {
   const std::string& name = file_.names[column];
   const auto names = [&](const DataOptions::Names& group) {
@@ -286,7 +286,7 @@ bool SignalReader::is_named(std::size_t column) const {
          data_.time == name || data_.date == name || is_one_of(name, data_.candidates);
 }
 
-/// Is the cell one of these words, or a number that one of them is?
+/// Tells whether the cell is one of these words, or a number that equals one of them.
 bool SignalReader::is_word(const std::string& cell, const std::vector<std::string>& words) const {
   if (is_one_of(cell, words))
     return true;

@@ -11,42 +11,42 @@
 
 namespace mpm {
 
-/// The signals in the columns of a file, in units of the study, a value a row.
+/// Reads signals from the columns of a file, in units of the study, one value per row.
 class SignalReader {
  public:
-  /// Both must outlive it; warnings go to the list. Qualities of what data.stored_on_change names are filled
-  /// in `file`.
+  /// `study` and `file` must outlive the reader; warnings go to the list. In `file` it fills the qualities of
+  /// the variables in data.stored_on_change.
   SignalReader(const Study& study, RecordColumns& file, std::vector<std::string>& warnings);
 
-  /// The column of a variable: that of its tag, "y.xD" as `mpmbench export` writes it (the prefix is "y"), or
-  /// "xD". Errors: InputError with the nearest one.
+  /// Returns the column of a variable: that of its tag, "y.xD" as `mpmbench export` writes it (the prefix is
+  /// "y"), or "xD". Errors: InputError with the nearest name.
   std::size_t column_of(const std::string& variable, const char* prefix) const;
 
-  /// The numbers of a column as the study has them: scale (cell - operating point) of the variable. NaN where
-  /// there is none, or one that cannot be measured (implausible_rows()). Errors: InputError for a column
-  /// without a number.
+  /// Returns the numbers of a column in units of the study: scale (cell - operating point) of the variable.
+  /// NaN if a cell has no number, or one that cannot be a measurement (implausible_rows()). Errors:
+  /// InputError if the column has no number.
   RowSignal numbers(std::size_t column, const std::string& variable);
 
-  /// The same of a variable of the study, without values of bad quality: of the column that data.quality
-  /// names, or of one that is found (quality_column_of()) and can be nothing else (are_qualities()). Errors:
-  /// also InputError when no row of a column that is named is good.
+  /// Returns the same for a variable of the study, without values of bad quality. The quality is in the
+  /// column that data.quality names, or in one that is found (quality_column_of()) and can only be a quality
+  /// (are_qualities()). Errors: also InputError if no row of a named quality column is good.
   RowSignal variable(const std::string& name, const char* prefix);
 
-  /// The signal of a variable with the value of the row before in each empty cell; a value that is bad or no
-  /// number holds as well.
+  /// Returns the signal of a variable with each empty cell filled from the row before. A value that is bad or
+  /// no number is held as well.
   RowSignal holding(const std::string& name, const char* prefix, RowSignal signal) const;
 
-  /// Is it stored on change only?
+  /// Tells whether the variable is stored only on change.
   bool on_change(const std::string& variable) const;
 
-  /// 1 where the controller is on, 0 where it is off, NaN where nothing is said.
+  /// Returns 1 where the controller is on, 0 where it is off, NaN where the cell is empty.
   RowSignal controller_on() const;
 
-  /// 1 where the controller has the variable (data.mode), 0 where operators have it, NaN where nothing is
-  /// said.
+  /// Returns 1 where the controller uses the variable (data.mode), 0 where operators do, NaN where the cell
+  /// is empty.
   RowSignal in_use(const std::string& variable) const;
 
-  /// Warns of setpoints and modes of variables that stand in the file and that [data] does not name.
+  /// Warns of columns with setpoints and modes of variables that [data] does not name.
   void tell_unnamed();
 
   bool has_numbers(std::size_t column) const;

@@ -33,7 +33,8 @@ std::string shown_heading(const std::string& name) {
   return std::string(cut_utf8(name, kShownBytes));
 }
 
-/// A heading without its number, as a reader makes it of several alike (time.1, time_2), in small letters.
+/// Returns a heading in small letters, without the number by which a program tells several equal headings
+/// apart (time.1, time_2).
 std::string heading_base(std::string name) {
   const std::size_t letter = name.find_last_not_of("0123456789");
   if (letter != std::string::npos && letter > 0 && letter + 1 < name.size() &&
@@ -48,20 +49,20 @@ const std::string* first_cell(const std::vector<std::string>& cells) {
   return found == cells.end() ? nullptr : &*found;
 }
 
-/// By `reads`; a number is none, so that no language is asked about the E of its exponent.
+/// Applies `reads` to the first cell. A number is never read: no language shall see the E of its exponent.
 bool first_cell_is(bool (*reads)(std::string_view), const RecordColumns& file, std::size_t column) {
   const std::string* const cell = first_cell(file.columns[column]);
   return cell != nullptr && !file.number(*cell) && reads(*cell);
 }
 
-/// Values that have their time stamps in common: columns of the file that is made, and where their cells are.
+/// Values that share their time stamps: columns of the new file, and where their cells are in the original.
 struct StampedSeries {
   struct Part {
-    std::size_t column;  ///< of the file that is made
-    std::size_t source;  ///< column of the file that is there
+    std::size_t column;  ///< column of the new file
+    std::size_t source;  ///< column of the original file
   };
   std::vector<Part> parts;
-  std::vector<std::size_t> rows;  ///< of the file that is there, ascending in time
+  std::vector<std::size_t> rows;  ///< rows of the original file, ascending in time
 };
 
 class RowsReader {
@@ -111,7 +112,8 @@ class RowsReader {
                        [&](const std::string& name) { return file_.find(name).has_value(); });
   }
 
-  /// Columns of stamps that have their heading in common; of a layout that the study names any of dates too.
+  /// Returns the columns of stamps that share a heading. If the study names the layout, columns of dates
+  /// count as well.
   std::vector<std::size_t> stamp_columns() const {
     std::vector<std::string> bases{heading_base(data_.time)};
     if (data_.time.empty())
@@ -140,7 +142,7 @@ class RowsReader {
     return fmt::format("{}: column '{}'", file_.file, shown_heading(file_.names[column]));
   }
 
-  /// Reads a column of stamps; all of a file must be of one kind.
+  /// Reads a column of stamps. All such columns of a file must be of one kind.
   TimeStamps read_stamps(std::size_t column, const std::vector<std::string>& cells) {
     const std::string place = place_of(column);
     TimeStamps stamps = parse_time_stamps({place, cells, file_.lines}, rows_.rules);
@@ -181,7 +183,7 @@ class RowsReader {
     return usual(kTimeHeadings);
   }
 
-  /// By its first cell, and by the study, which may call it a variable.
+  /// Decides by the first cell, and by the study, which may use the column as a variable.
   bool may_be_stamps(std::size_t column) const {
     const std::string* const cell = first_cell(file_.columns[column]);
     const bool is_wanted =
@@ -190,7 +192,7 @@ class RowsReader {
            (!data_.time_format.empty() || file_.number(*cell) || is_date(*cell) || is_time_of_day(*cell));
   }
 
-  /// The one column of dates, whatever its heading is.
+  /// Returns the only column of dates, whatever its heading is.
   std::optional<std::size_t> column_of_dates() const {
     std::optional<std::size_t> found;
     for (std::size_t column = 0; column < file_.names.size(); ++column) {
@@ -207,7 +209,7 @@ class RowsReader {
     return found;
   }
 
-  /// A column without a heading, or with one that speaks of time, whose numbers are known as dates.
+  /// Returns a column whose heading is empty or names a time, and whose numbers are recognised as dates.
   std::optional<std::size_t> column_of_dates_in_numbers() const {
     for (std::size_t column = 0; column < file_.names.size(); ++column) {
       const std::string base = heading_base(file_.names[column]);
@@ -220,7 +222,7 @@ class RowsReader {
     return std::nullopt;
   }
 
-  /// Cells of the stamps: those of the column, with the dates of another one before times of day.
+  /// Returns the cells of the stamps: those of the column, or dates and times of day joined from two columns.
   std::vector<std::string> stamp_cells(std::size_t& column) const {
     const bool no_date = first_cell_is(is_time_of_day, file_, column);
     std::optional<std::size_t> dates;
@@ -244,7 +246,7 @@ class RowsReader {
     return cells;
   }
 
-  /// The one column of times of day beside one of dates that have none but midnight.
+  /// Returns the only column of times of day beside a column of dates whose own times are all midnight.
   std::optional<std::size_t> times_beside(std::size_t column) const {
     std::optional<std::size_t> found;
     for (std::size_t other = 0; other < file_.names.size(); ++other)
@@ -266,7 +268,7 @@ class RowsReader {
     return dates ? found : std::nullopt;
   }
 
-  /// A date, whose own midnight does not count, and a time of day.
+  /// Joins a date and a time of day. A time in the date itself (midnight) is dropped.
   static std::string joined(std::string date, const std::string& time) {
     if (const std::size_t colon = date.find(':'); colon != std::string::npos) {
       const std::size_t before = date.find_last_of(" T", colon);
@@ -343,7 +345,7 @@ class RowsReader {
         all, [&](std::size_t series, std::size_t row) { return times[series][row]; }, std::move(names));
   }
 
-  /// A heading that comes again with other tags belongs to the tag before it: "TAG.status".
+  /// Names a column. A heading that recurs for other tags gets the tag before it: "TAG.status".
   std::string name_of_part(std::size_t tag, std::size_t column) const {
     const std::string& name = file_.names[column];
     const bool again = std::count(file_.names.begin(), file_.names.end(), name) > 1;
@@ -400,7 +402,7 @@ class RowsReader {
                        fmt::format("1 to {}; data.tag_column names another column", kMostTags));
   }
 
-  /// The rows of one tag in the order of their stamps.
+  /// Returns the rows of one tag in the order of their stamps.
   StampedSeries of_tag(std::size_t column, const TimeStamps& stamps, const std::vector<std::size_t>& rows) {
     TimeStamps of_tag = {.calendar = stamps.calendar,
                          .offsets = stamps.offsets,
@@ -419,11 +421,11 @@ class RowsReader {
     return series;
   }
 
-  /// Brings series with stamps of their own into common rows. time_of(series, row) is the stamp of a row of
-  /// the file.
+  /// Merges series with separate stamps into common rows. time_of(series, row) is the stamp of a row of the
+  /// file.
   template <class TimeOf>
   void merge(const std::vector<StampedSeries>& all, TimeOf time_of, std::vector<std::string> names) {
-    std::map<std::pair<double, std::size_t>, std::size_t> places;  // time and how often it stood before
+    std::map<std::pair<double, std::size_t>, std::size_t> places;  // time, and how often it occurred before
     std::vector<std::vector<std::pair<double, std::size_t>>> keys(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)
       for (const std::size_t row : all[i].rows) {
@@ -479,7 +481,7 @@ class RowsReader {
   const RowsWanted& wanted_;
   RecordColumns file_;
   StampedRows rows_;
-  bool known_ = false;  ///< of which kind the stamps are
+  bool known_ = false;  ///< the kind of the stamps is known
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kHourOfClock = 3600.0;  // s
 
-/// Two neighbours among the rows that are kept, and what is said about them.
+/// Checks the steps between neighbouring rows that are kept.
 class StampSteps {
  public:
   StampSteps(const StampSource& source, const TimeStamps& stamps, const std::vector<std::size_t>& rows)
@@ -21,7 +21,7 @@ class StampSteps {
   double time(std::size_t place) const { return stamps_.times[rows_[place]]; }
   double step(std::size_t place) const { return time(place) - time(place - 1); }
 
-  /// Refuses a step that no time makes.
+  /// Refuses a step that no passing of time can make.
   void require_forward(std::size_t place) const {
     if (step(place) < 0.0)
       refuse_step_back(place);
@@ -54,7 +54,7 @@ class StampSteps {
               : "stamps in ascending order: sort the rows, and leave out what was recorded twice");
   }
 
-  /// Is exactly one hour missing in the night, as when the clock is put forward?
+  /// Tells whether exactly one hour is missing at night, as when the clock is put forward.
   bool is_spring_forward(std::size_t place) const {
     const double usual = step_before(place);
     const double hour = std::fmod(time(place), 86400.0) / kHourOfClock;

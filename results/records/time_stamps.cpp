@@ -33,7 +33,7 @@ constexpr const char* kForms =
 using Dates = std::vector<std::optional<WrittenDate>>;
 
 [[noreturn]] void refuse_stamp(const StampSource& source, std::size_t row, const std::string& allowed) {
-  const std::size_t line = source.lines[row];  // 0: of no file
+  const std::size_t line = source.lines[row];  // 0: not from a file
   throw InputError(line == 0 ? source.where : fmt::format("{}, line {}", source.where, line),
                    fmt::format("'{}'", cut_utf8(source.cells[row], kShownBytes)), allowed);
 }
@@ -59,7 +59,7 @@ constexpr EpochUnit kEpochUnits[] = {{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"ns"
 
 struct StampRange {
   double low, high;
-  /// Of those that there are: one at least.
+  /// Tells whether there are values and all of them are in the range; NaN does not count.
   bool has_all(const std::vector<double>& values, double scale = 1.0) const {
     std::size_t inside = 0, there = 0;
     for (const double value : values) {
@@ -72,7 +72,7 @@ struct StampRange {
 
 constexpr StampRange kEpoch{631152000.0, 4102444800.0};  // 1990 to 2099, s since 1970
 
-/// Programs that count days.
+/// A program that counts days, and its count for 1970-01-01.
 struct DayCount {
   const char* name;
   double of_1970;
@@ -89,7 +89,7 @@ double median_step(std::vector<double> values) {
   return steps.empty() ? 0.0 : upper_median(std::move(steps));
 }
 
-/// Days whose steps suit the controller, and would be far too short for it in the unit of the plant.
+/// Tells whether the steps suit the controller as days but are far too short for it in the unit of the plant.
 bool have_steps_of_days(const std::vector<double>& values, const StampRules& rules) {
   constexpr double kLongestStep = 10.0, kFarTooShort = 0.01;
   const double step = median_step(values);
@@ -97,7 +97,7 @@ bool have_steps_of_days(const std::vector<double>& values, const StampRules& rul
          step < kFarTooShort * rules.sample;
 }
 
-/// Stamps to the nearest millisecond: the digits of a sheet leave no more.
+/// Converts days to stamps, rounded to milliseconds: a spreadsheet has no more digits.
 TimeStamps from_days(std::vector<double> days, const DayCount& count, bool found) {
   constexpr double kMilliseconds = 1000.0;
   for (double& day : days)
@@ -138,7 +138,7 @@ TimeStamps from_numbers(std::vector<double> values, const StampRules& rules) {
 
 // --- Dates ---
 
-/// The order that the stamps themselves show.
+/// Returns the order of day, month and year that the stamps themselves show.
 DateOrder shown_order(const StampSource& source, const Dates& dates) {
   bool day_first = false, month_first = false, points = false;
   const std::string* example = nullptr;
@@ -167,7 +167,7 @@ bool has_offset(const WrittenTime& time) {
   return time.offset || !time.zone.empty();
 }
 
-/// An hour that some stamps mean in another way than the others moves these without a word.
+/// Refuses mixed forms: otherwise some stamps could be hours off without a message.
 void refuse_mixed_forms(const StampSource& source, const Dates& dates) {
   const std::optional<WrittenDate>* first = nullptr;
   for (std::size_t row = 0; row < dates.size(); ++row) {
@@ -183,7 +183,7 @@ void refuse_mixed_forms(const StampSource& source, const Dates& dates) {
   }
 }
 
-/// What the clock of a zone shows, row by row, as UTC.
+/// Converts the times that the clock of a zone shows to UTC, row by row.
 class LocalTimes {
  public:
   LocalTimes(const StampSource& source, const std::string& zone) : source_(source), name_(zone) {
@@ -220,7 +220,7 @@ class LocalTimes {
   double latest_ = -kInfinity;
 };
 
-/// The rows from the earliest to the latest, of stamps that ascend or descend.
+/// Returns the rows from the earliest to the latest; the stamps must ascend or descend.
 std::vector<std::size_t> rows_in_time(const std::vector<double>& times) {
   std::vector<std::size_t> rows;
   for (std::size_t row = 0; row < times.size(); ++row)
@@ -256,14 +256,14 @@ TimeStamps from_dates(const StampSource& source, const Dates& dates, const Stamp
   return stamps;
 }
 
-/// A date of the form that the study gives.
+/// A date in the format that the study gives.
 struct FormattedDate {
-  double seconds = kNaN;  ///< since 1970, less the offset where there is one
+  double seconds = kNaN;  ///< since 1970, minus the offset if there is one
   bool has_offset = false;
-  std::string letters;  ///< of a zone
+  std::string letters;  ///< letters of a zone
 };
 
-/// None for a cell that is not read to its end.
+/// Reads a cell in this format; none unless the whole cell can be read.
 std::optional<FormattedDate> formatted_date(const std::string& cell, const std::string& format) {
   using LocalTime = date::local_time<std::chrono::microseconds>;
   constexpr double kMicroseconds = 1e6;
@@ -308,7 +308,7 @@ TimeStamps in_format(const StampSource& source, const StampRules& rules) {
   return stamps;
 }
 
-/// Dates in digits alone; none when one cell is none.
+/// Reads dates that consist of digits alone; none if any cell is no such date.
 std::optional<Dates> compact_dates(const std::vector<std::string>& cells) {
   Dates dates(cells.size());
   for (std::size_t row = 0; row < cells.size(); ++row) {
@@ -321,7 +321,7 @@ std::optional<Dates> compact_dates(const std::vector<std::string>& cells) {
   return dates;
 }
 
-/// Cells one by one: all of them, or those before one that is neither a number nor a date.
+/// The cells read one by one: all of them, or those before the first that is neither a number nor a date.
 struct ReadCells {
   std::vector<double> numbers;
   Dates dates;

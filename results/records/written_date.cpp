@@ -24,7 +24,7 @@ class DateScanner {
   char next() const { return text_.empty() ? '\0' : text_.front(); }
   bool digit_next() const { return std::isdigit(static_cast<unsigned char>(next())) != 0; }
 
-  /// Takes one of these signs; '\0' when none of them stands here.
+  /// Takes one of these signs; returns '\0' if none of them comes next.
   char sign(std::string_view allowed) {
     if (text_.empty() || allowed.find(text_.front()) == std::string_view::npos)
       return '\0';
@@ -39,13 +39,13 @@ class DateScanner {
     return text_.size() < before;
   }
 
-  /// All digits that stand here, if there are `least` to `most` of them.
+  /// Takes all digits that come next, if there are `least` to `most` of them.
   std::string_view digits(std::size_t least, std::size_t most) {
     const std::size_t count = std::min(text_.find_first_not_of("0123456789"), text_.size());
     return count < least || count > most ? std::string_view() : take(count);
   }
 
-  /// The number in them.
+  /// Takes digits in the same way and returns their number.
   std::optional<int> number(std::size_t least, std::size_t most) {
     const std::string_view found = digits(least, most);
     int value = 0;
@@ -53,7 +53,7 @@ class DateScanner {
     return found.empty() ? std::nullopt : std::optional(value);
   }
 
-  /// All letters that stand here, those of other scripts among them.
+  /// Takes all letters that come next, including those of other scripts.
   std::string_view letters() {
     std::size_t count = 0;
     while (count < text_.size() && (std::isalpha(static_cast<unsigned char>(text_[count])) != 0 ||
@@ -77,7 +77,7 @@ bool same_letters(std::string_view a, std::string_view b) {
                     [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-/// Its place among names, of which each stands for itself and for its first three letters.
+/// Returns the position of a word among names. A name matches in full or by its first three letters.
 template <std::size_t size>
 std::optional<int> place_among(std::string_view word, const std::array<std::string_view, size>& names) {
   constexpr std::size_t kShort = 3;
@@ -109,7 +109,7 @@ bool is_day_of_week(std::string_view word) {
   return place_among(word, kDays).has_value();
 }
 
-/// "+01:00", "+0100" or "+01" in s behind its sign; none for one that no clock has.
+/// Reads "+01:00", "+0100" or "+01" after its sign, as s; none if no clock has this offset.
 std::optional<double> read_offset(DateScanner& scan, char sign) {
   constexpr double kMostHours = 14.0;
   constexpr int kHundred = 100;
@@ -129,8 +129,7 @@ std::optional<double> read_offset(DateScanner& scan, char sign) {
   return (sign == '-' ? -1.0 : 1.0) * (kSecondsOfClockHour * *hours + kSecondsOfMinute * minutes);
 }
 
-/// What stands behind a time of day, up to the end; false for what does not belong there. AM and PM change
-/// the hour.
+/// Reads everything after a time of day; false if something does not belong there. AM and PM change the hour.
 bool read_zone(DateScanner& scan, WrittenTime& time, int& hour) {
   scan.blanks();
   if (std::string_view word = scan.letters(); !word.empty()) {
@@ -158,7 +157,7 @@ bool read_zone(DateScanner& scan, WrittenTime& time, int& hour) {
   return scan.at_end();
 }
 
-/// The fraction of a second in what stands here.
+/// Reads the fraction of a second, if one comes next.
 double read_fraction(DateScanner& scan) {
   if (scan.sign(".,") == '\0')
     return 0.0;
@@ -168,7 +167,7 @@ double read_fraction(DateScanner& scan) {
   return fraction;
 }
 
-/// h:mm, h:mm:ss.f or hhmm, hhmmss, and what stands behind it, up to the end.
+/// Reads h:mm, h:mm:ss.f, hhmm or hhmmss, and everything after it.
 std::optional<WrittenTime> read_time(DateScanner& scan, bool basic) {
   std::optional<int> hour, minute, second = 0;
   bool fraction = false;
@@ -201,7 +200,7 @@ std::optional<WrittenTime> read_time(DateScanner& scan, bool basic) {
   return time;
 }
 
-/// A year of two digits is one of this century.
+/// Completes a year of two digits: it is in this century.
 int full_year(int year) {
   return year < 100 ? year + 2000 : year;
 }
@@ -211,7 +210,7 @@ WrittenDate resolved_date(int year, int month, int day) {
       .first = full_year(year), .second = month, .third = day, .resolved = true, .points = false, .time = {}};
 }
 
-/// "27-Oct-24", "2024-Oct-27", "Oct 27, 2024", behind `first`, the number before the month.
+/// Reads "27-Oct-24", "2024-Oct-27" or "Oct 27, 2024". `first` is the number before the month, already read.
 std::optional<WrittenDate> with_named_month(DateScanner& scan, std::optional<int> first) {
   constexpr int kMostDays = 31;
   const std::optional<int> month = month_of(scan.letters());
@@ -233,7 +232,7 @@ std::optional<WrittenDate> with_named_month(DateScanner& scan, std::optional<int
 
 std::optional<WrittenDate> in_numbers(DateScanner& scan, int first) {
   const char separator = scan.sign("-./");
-  const auto blanks_of_points = [&] { return separator == '.' && scan.blanks(); };  // 27. 10. 2024
+  const auto blanks_of_points = [&] { return separator == '.' && scan.blanks(); };  // as in 27. 10. 2024
   blanks_of_points();
   const std::optional<int> second = scan.number(1, 2);
   if (!second || scan.sign("-./") == '\0')
@@ -252,7 +251,7 @@ std::optional<WrittenDate> in_numbers(DateScanner& scan, int first) {
                      .time = {}};
 }
 
-/// 20241027
+/// Reads a date such as 20241027.
 std::optional<WrittenDate> in_digits(std::string_view digits) {
   DateScanner of_year(digits.substr(0, 4)), of_month(digits.substr(4, 2)), of_day(digits.substr(6, 2));
   const auto year = of_year.number(4, 4), month = of_month.number(2, 2), day = of_day.number(2, 2);

@@ -25,7 +25,7 @@ constexpr double kHourOfZone = 3600.0;  // s
 const date::time_zone* zone_named(const std::string& name, const std::string& place) {
   try {
     return date::locate_zone(name);
-  } catch (const std::exception&) {  // also without a database
+  } catch (const std::exception&) {  // also if there is no database
     throw InputError(place, fmt::format("'{}'", cut_utf8(name, kShownBytes)),
                      "a name of the time zone database, such as Europe/Berlin, America/Chicago or UTC");
   }
