@@ -17,9 +17,9 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kMostRows = 500;  // experiments that are listed one by one
+constexpr std::size_t kMostRows = 500;  // experiments listed one by one
 
-/// What the sections are made from. The first archive is A, the second B.
+/// What the sections are made from. The first archive is A, and the second B.
 struct Change {
   const Campaign &before, &now;
   std::string before_file, now_file;  ///< how commands name the archives
@@ -33,12 +33,12 @@ std::string p_text(double p) {
   return std::isnan(p) ? "-" : fmt::format("{:.2g}", p);
 }
 
-/// "+1.2 to +3.4", in percentage points.
+/// A share in percentage points with its sign: "+1.2".
 std::string points(double share) {
   return std::isnan(share) ? "-" : fmt::format("{:+.1f}", 100.0 * share);
 }
 
-/// Which experiments are compared, and how.
+/// Says which experiments are compared, and how.
 std::string pairing_words(const Change& change) {
   const std::int64_t loops = change.pairing.loops;
   if (!change.pairing.paired())
@@ -61,7 +61,7 @@ void add_words(std::string& list, const std::string& words) {
   list += (list.empty() ? "" : "; ") + words;
 }
 
-/// The verdict on paired runs.
+/// Adds the verdict on paired runs.
 void add_paired(Section& section, const Change& change) {
   std::string worse, better;
   std::size_t lost = 0, gained = 0;
@@ -91,7 +91,7 @@ void add_paired(Section& section, const Change& change) {
   section.say(words, worse.empty() ? Paragraph::Kind::passed : Paragraph::Kind::failed);
 }
 
-/// The verdict on unpaired runs.
+/// Adds the verdict on unpaired runs.
 void add_unpaired(Section& section, const Change& change) {
   std::size_t rates = 0, different = 0;
   for (const MethodChange& method : change.methods)
@@ -152,7 +152,7 @@ Section studies_section(const Change& change) {
   return section;
 }
 
-/// Those of which a loop changed, or all of unpaired runs.
+/// Tells whether a rate is shown: a loop changed for it, or the runs are unpaired.
 bool is_shown(const RateChange& change, bool paired) {
   return !paired || change.counts.first + change.counts.second > 0 || change.before.hits != change.now.hits ||
          change.before.total != change.now.total;
@@ -200,7 +200,7 @@ Section rates_section(const Change& change) {
   return section;
 }
 
-/// What the method says, in short.
+/// Says briefly what the method answered.
 std::string answer_text(const Study& study, const ExperimentRecord& record, const AssessmentRecord& said) {
   if (record.status != ExperimentStatus::ok)
     return std::string(to_string(record.status));
@@ -238,7 +238,8 @@ Table count_table(const Change& change) {
   return table;
 }
 
-/// Questions of each experiment that became right, or are right no more: "flag, impact lost; CV gained".
+/// Lists for each experiment the questions whose answer became right or is no longer right: "flag, impact
+/// lost; CV gained".
 std::map<std::int64_t, std::string> changed_experiments(const MethodChange& method) {
   std::map<std::int64_t, std::string> experiments;
   for (const VerdictChange& verdict : method.verdicts) {
@@ -250,7 +251,7 @@ std::map<std::int64_t, std::string> changed_experiments(const MethodChange& meth
   return experiments;
 }
 
-/// The experiments with another verdict, one by one.
+/// Lists the experiments whose answers changed, one by one.
 Table experiment_table(const Change& change) {
   Table table("Experiments with an answer that became right or wrong.",
               {{"No."},

@@ -15,24 +15,24 @@ namespace {
 
 using Methods = std::vector<MethodFindings>;
 
-/// Rows of more methods stand closer.
+/// With more methods than this, the rows are closer together.
 constexpr std::size_t kFewMethods = 8;
 
-/// A curve in the pen of its method.
+/// The pen of a method, for a curve.
 Pen curve_pen(std::size_t method) {
   Pen pen = method_pen(method);
   pen.mark = Mark::none;
   return pen;
 }
 
-/// Whiskers in the colour of their method, solid so that short ones can be seen.
+/// The pen of a method, for whiskers: solid, so that short ones are visible.
 Pen whisker_pen(std::size_t method) {
   Pen pen = method_pen(method);
   pen.dash = Dash::solid;
   return pen;
 }
 
-/// The places of the methods that gave some verdict; the others would be empty rows.
+/// Returns the positions of the methods that gave some verdict. The others would be empty rows.
 std::vector<std::size_t> answering(const Methods& methods) {
   std::vector<std::size_t> places;
   for (std::size_t m = 0; m < methods.size(); ++m)
@@ -73,7 +73,7 @@ Panel rate_panel(const RateRow& row, const Methods& methods) {
                       70.0 + (places.size() > kFewMethods ? 18.0 : 28.0) * rows);
 }
 
-/// The curve with at most kMostPoints points, of which the first and the last are always there.
+/// Draws the curve with at most kMostPoints points, always including the first and the last.
 void draw_curve(PanelScript& panel, const RocCurve& roc, const Pen& pen) {
   std::vector<double> x, y;
   const std::size_t stride = roc.size / kMostPoints + 1;
@@ -91,7 +91,7 @@ const RocCurve& curve_of(const MethodFindings& method, FlagTruth truth) {
   return truth == FlagTruth::fault ? method.rates.roc : method.rates.roc_impact;
 }
 
-/// What a figure of curves is called, and says.
+/// The names and texts of a figure of curves.
 struct RocWords {
   const char *figure, *panel, *x, *y, *caption, *description;
 };
@@ -118,7 +118,7 @@ RocWords roc_words(FlagTruth truth) {
           "against healthy ones and those whose fault has none."};
 }
 
-/// Where the method itself draws the line: what it flags of both kinds of loops.
+/// The point at which the method itself draws the line: its shares of flagged healthy and faulty loops.
 NamedPoint verdict_point(const MethodFindings& method) {
   const double x = 100.0 * method.rates["false_alarm_healthy"].value,
                y = 100.0 * method.rates["detected"].value;

@@ -8,13 +8,13 @@
 
 namespace mpm {
 
-/// A panel a rate; `answered` says nothing that a table does not.
+/// Draws one panel per rate, except `answered`, of which a table already says everything.
 Figure comparison_rates_figure(const Study& study, const std::vector<MethodFindings>& methods);
 
-/// Does some method have a ROC curve for this truth?
+/// Tells whether any method has a ROC curve for this truth.
 bool has_curves(const std::vector<MethodFindings>& methods, FlagTruth truth);
 
-/// The ROC curves of the methods that have one, which must be some.
+/// Draws the ROC curves of the methods that have one. There must be at least one.
 Figure comparison_roc_figure(const std::vector<MethodFindings>& methods, FlagTruth truth);
 
 }  // namespace mpm

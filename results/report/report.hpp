@@ -12,11 +12,11 @@
 
 namespace mpm {
 
-/// The reason why the page draws a loop.
+/// Why the page draws a loop.
 enum class LoopReason {
-  faulty,   ///< with a fault and a right verdict, the median of its kind by the cost of the fault
+  faulty,   ///< with a fault and a right verdict: the median by the cost of the fault
   healthy,  ///< the same without a fault
-  wrong,    ///< with a wrong verdict, among the costliest
+  wrong,    ///< with a wrong verdict, among those with the highest cost
 };
 
 /// An experiment whose loop the page draws.
@@ -25,31 +25,28 @@ struct ShownExperiment {
   ExperimentRecord record;
 };
 
-/// A closed loop of an experiment, for the page to draw.
+/// A closed loop of an experiment that the page can draw.
 struct LoopView {
   ShownExperiment of;
   Trajectory trajectory;
-  NominalOutputs nominal;  ///< y0 and its parts, shapes as the trajectory
+  NominalOutputs nominal;  ///< y0 and its parts, with the shape of the trajectory
 };
 
-/// The experiments whose loops the page draws, in this order: one that is faulty, one that is healthy, and
-/// the costliest with a wrong verdict, the costliest one first. None of named scenarios, which have figures
-/// of their own, and none where the chain of the thesis was not asked.
+/// Returns the experiments whose loops the page draws, in this order: a faulty one, a healthy one, and those
+/// with a wrong verdict and the highest cost, the highest first. Empty for named scenarios, which have
+/// figures of their own, and if the chain of the thesis was not run.
 std::vector<ShownExperiment> loops_to_show(const Campaign& campaign);
 
-/// The results of a run as one HTML page that needs nothing else: no network, figures as SVG
-/// (docs/report.md). `file` is the archive, for the commands that replay experiments; only its name is shown.
-/// Of the loops that are not in `loops` the page draws none. The bytes depend on the campaign, the name and
-/// the version of gnuplot only.
-///
-/// Errors: GnuplotError.
+/// Writes the results of a run as one self-contained HTML page: no network, figures as SVG (docs/report.md).
+/// `file` is the archive, for the commands that replay experiments; only its name is shown. The page draws
+/// only the loops in `loops`. Its bytes depend only on the campaign, the name and the version of gnuplot.
 std::string report_html(const Campaign& campaign, const StudyFindings& findings,
                         const std::filesystem::path& file, const std::vector<LoopView>& loops);
 
-/// Writes the same figures but those of loops, and the confusion matrices as heat maps, into `folder`, one
-/// file a figure, and returns their paths. The folder is made when its parent exists.
+/// Writes the same figures, except for the loops, and the confusion matrices as heat maps into `folder`, one
+/// file per figure, and returns their paths. Creates the folder if its parent exists.
 ///
-/// Errors: GnuplotError; ArchiveError when a file cannot be written.
+/// Errors: GnuplotError; ArchiveError if a file cannot be written.
 std::vector<std::filesystem::path> write_figures(const Campaign& campaign, const StudyFindings& findings,
                                                  const std::filesystem::path& folder, FigureFormat format);
 

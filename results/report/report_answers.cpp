@@ -31,7 +31,8 @@ std::string asked(const ReportInput& input) {
       kinds_text(input.campaign.study, input.parts.kinds));
 }
 
-/// Where no method names a source: of the one that finds the CV most often. Empty when none names a CV.
+/// The result if no method names a source: that of the method that finds the CV most often. Empty if none
+/// names a CV.
 std::string found_of_cvs(const ReportInput& input) {
   const MethodFindings* const best = best_method(input.findings(), "located");
   if (best == nullptr)
@@ -69,8 +70,8 @@ std::string found(const ReportInput& input) {
                                       : "no loop has a verdict that can be judged.";
 }
 
-/// What a plant would do with what `who` says. The limits are those of a tool that is right nine times in
-/// ten.
+/// Says what a plant should do with the verdicts of `who`. The limits are those of a tool that is right nine
+/// times in ten.
 std::string advice_on(const std::string& who, const Rate& located, const Rate& source) {
   constexpr double kReliable = 0.9;
   if (located.total > 0 && located.interval.lower < kReliable)
@@ -84,7 +85,7 @@ std::string advice_on(const std::string& who, const Rate& located, const Rate& s
       who);
 }
 
-/// Of the method that found() says is best, so that both say the same.
+/// Gives advice on the method that found() calls the best, so that the two agree.
 std::string advice(const ReportInput& input) {
   if (!input.campaign.basis.healthy)
     return "do not use these numbers: the basis case failed its self-check. Repair the study first.";
@@ -101,7 +102,7 @@ std::string advice(const ReportInput& input) {
   return advice_on("this chain", located, input.findings().source_recognised);
 }
 
-/// "MPM 71.0 % (60.0 to 80.0), UD 85 % (...)": of the kinds that have any.
+/// "MPM 71.0 % (60.0 to 80.0), UD 85 % (...)", for the kinds that count any loop.
 std::string by_kind(const ReportInput& input, Rate KindFindings::*member) {
   std::string text;
   for (const KindFindings& kind : input.kinds())

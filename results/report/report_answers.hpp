@@ -8,8 +8,8 @@
 #include "analysis/statistics/roc.hpp"
 #include "results/report/report_sections.hpp"
 
-// What the page says in words: the verdict on top, and below each question a sentence made from the numbers,
-// with their uncertainty. Each gives an empty text where the numbers are missing.
+// The words of the page: the verdict at the top, and below each question a sentence made from the numbers and
+// their uncertainty. A text is empty if its numbers are missing.
 
 namespace mpm {
 
@@ -23,7 +23,7 @@ std::string location_answer(const ReportInput& input);
 std::string indicator_answer(const ReportInput& input);
 std::string dominance_answer(const ReportInput& input);
 std::string roc_answer(const RocCurve& curve, const Interval& area, const RocPoint& at_study);
-/// `faults`: all experiments with a single fault, whatever its size is measured by.
+/// `faults`: all experiments with a single fault, however its size is measured.
 std::string fault_size_answer(const std::vector<SizedFault>& faults, double confidence);
 std::string s0_answer(const ReportInput& input);
 std::string interaction_answer(const ReportInput& input, const LoopInteraction& interaction);

@@ -20,13 +20,13 @@ const Pen kY0{colour::kBlue, Dash::dashed, Mark::none, 1.8};
 const Pen kY0Diag{colour::kVermillion, Dash::dotted, Mark::none, 2.0};
 const Pen kWhiteBand{colour::kLightGrey, Dash::solid, Mark::none, 1.0};
 
-constexpr Eigen::Index kFewCvs = 3;  // of so many CVs all are drawn
+constexpr Eigen::Index kFewCvs = 3;  // up to this many CVs, all are drawn
 
-/// What the chain says about one loop, under its name.
+/// What the chain says about one loop, and the name of the loop.
 struct Loop {
   std::string id;
   std::string name;
-  std::map<Eigen::Index, AcfComparison> drawn = {};  ///< the CVs that are drawn
+  std::map<Eigen::Index, AcfComparison> drawn = {};  ///< CVs to draw
 };
 
 std::vector<Loop> loops_of(const Campaign& campaign) {

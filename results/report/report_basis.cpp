@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// The direct step responses under the identified ones.
+/// The pen of the direct step responses, which are drawn below the identified ones.
 const Pen kDirect{colour::kLightGrey, Dash::solid, Mark::none, 4.0};
 
 Panel step_panel(const Study& study, const NominalSensitivity& sensitivity,

@@ -16,7 +16,7 @@ namespace {
 
 using Methods = std::vector<MethodFindings>;
 
-/// What each rate counts.
+/// Explains what each rate counts.
 std::string rates_legend(const Study& study) {
   std::string words;
   for (const MethodNumber& number : method_numbers())

@@ -19,7 +19,7 @@ const Pen kKurtosisEllipse{colour::kBlue, Dash::solid, Mark::none, 1.8};
 const Pen kSkewnessEllipse{colour::kVermillion, Dash::dashed, Mark::none, 1.8};
 
 constexpr double kProbability = 0.95;
-constexpr int kCorners = 72;  // of the polygon that stands for an ellipse
+constexpr int kCorners = 72;  // of the polygon that draws an ellipse
 
 template <class Part>
 struct Statistic {
@@ -47,7 +47,7 @@ void draw_ellipse(PanelScript& panel, const CentredSums& sums, const Pen& pen) {
   panel.line(x, y, pen);
 }
 
-/// The ellipses of one CV: of the moments, or of their differences.
+/// Draws the ellipses of one CV, either of the moments or of their differences.
 Panel ellipse_panel(const std::string& name, const std::string& cv, const PerStatistic<CentredSums>& scatter,
                     bool differences) {
   const char* what = differences ? "differences" : "moments";
@@ -59,7 +59,7 @@ Panel ellipse_panel(const std::string& name, const std::string& cv, const PerSta
       fmt::format("Confidence ellipses of moving kurtosis and skewness, {}, of {}.", what, cv), 240);
 }
 
-/// Calls `visit(name of the CV, what was found of it)` for each flagged CV.
+/// Calls `visit(name of the CV, results for it)` for each flagged CV.
 template <class Visit>
 void for_each_flagged(const Campaign& campaign, Visit visit) {
   for (const ExperimentRecord& record : campaign.records) {

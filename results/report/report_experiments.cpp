@@ -24,7 +24,7 @@ Cell outcome_cell(const Study& study, const ExperimentRecord& record) {
   return judge(study, record, chain).wrong() ? Cell("wrong").toned(Cell::Tone::bad) : Cell("right");
 }
 
-/// The index of the true CV; without a fault, the one that is farthest from 1.
+/// Returns the index of the true CV or, if there is no fault, of the CV whose index is farthest from 1.
 double index_of(const Study& study, const ExperimentRecord& record, const Eigen::VectorXd& values) {
   const Eigen::Index cv = record.draw.true_cv() >= 0
                               ? record.draw.true_cv()

@@ -18,7 +18,7 @@ const Pen kQuiet{colour::kBlue, Dash::none, Mark::dot, 1.0, 0.5};
 const Pen kAlarm{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.6};
 const Pen kCost{colour::kGrey, Dash::none, Mark::circle, 1.0, 0.5};
 
-/// Numbers of a logarithmic axis that a reader can take in, between these values.
+/// Returns easily read numbers for a logarithmic axis between these values.
 std::vector<double> round_numbers(double least, double largest) {
   std::vector<double> ticks;
   for (const double number :
@@ -28,7 +28,8 @@ std::vector<double> round_numbers(double least, double largest) {
   return ticks;
 }
 
-/// The indices of an experiment that are farthest from 1, against the factor of the weight or the number.
+/// Draws for each experiment the indices farthest from 1, against the factor of the weight, or against the
+/// number of the experiment.
 Panel group_panel(const ReportInput& input, const FalseAlarms& group) {
   const Study& study = input.campaign.study;
   double least = study.diagnosis.impact_lower, largest = study.diagnosis.impact_upper;

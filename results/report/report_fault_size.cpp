@@ -23,7 +23,7 @@ const Pen kMissed{colour::kGrey, Dash::none, Mark::circle, 1.0, 0.35};
 const Pen kWrongVerdict{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.5};
 const Pen kNoFault{colour::kGrey, Dash::dashed, Mark::none, 1.2};
 
-/// How the panel of a measure is labelled.
+/// The title and the axis label of the panel of a measure.
 struct Labels {
   std::string title, axis;
 };
@@ -67,7 +67,7 @@ void add_curve(PanelScript& panel, const std::vector<Whisker>& list, const Pen& 
   panel.upright_whiskers(list, pen);
 }
 
-/// A mark for each fault that was not diagnosed correctly: a row below the shares.
+/// Makes a mark for each fault that was not diagnosed correctly; the marks are in rows below the shares.
 std::map<std::int64_t, NamedPoint> fault_marks(const ReportInput& input,
                                                const std::vector<SizedFault>& faults) {
   constexpr double kMissedRow = -7, kWrongRow = -15;

@@ -9,7 +9,7 @@ struct Term {
   const char* anchor;
   const char* word;      ///< HTML
   const char* meaning;   ///< HTML
-  bool of_chain = true;  ///< only where the chain of the thesis was asked
+  bool of_chain = true;  ///< only shown if the chain of the thesis was run
 };
 
 constexpr Term kTerms[] = {

@@ -4,8 +4,8 @@
 
 namespace mpm {
 
-/// The words of the thesis that the page uses, for the margin; each has the anchor "term-NAME".
-/// `chain`: those of the thesis's chain, too.
+/// Explains the words of the thesis that the page uses, for the margin. Each has the anchor "term-NAME".
+/// `chain`: include the words of the thesis's chain.
 std::string glossary_html(bool chain);
 
 }  // namespace mpm

@@ -20,7 +20,7 @@ const Pen kWrong{colour::kVermillion, Dash::none, Mark::triangle, 1.0, 0.6};
 const Pen kBoth{colour::kGreen, Dash::none, Mark::dot, 1.0, 0.5};
 const Pen kMean{colour::kBlack, Dash::solid, Mark::square, 2.0, 0.6};
 
-/// I_MPM of an experiment that rates of it are counted over, as in the findings; NaN for any other.
+/// Returns I_MPM if the rates of I_MPM count this experiment, as in the findings; otherwise NaN.
 double judged_indicator(const Study& study, const ExperimentRecord& record) {
   const AssessmentRecord* const chain = record.diagnosed();
   return chain != nullptr && in_source_population(study, *chain) ? chain->number("i_mpm") : NAN;

@@ -13,7 +13,7 @@
 namespace mpm {
 namespace {
 
-/// How deep the colour of a field is that has this share of its row.
+/// Returns the depth of the colour of a field that has this share of its row.
 double depth_of_share(double share) {
   return 0.15 + 0.65 * share;
 }
@@ -28,7 +28,7 @@ std::string cell(std::int64_t count, std::int64_t of_row, bool right) {
                      right ? "86,180,233" : "230,159,0", depth_of_share(of_all), count);
 }
 
-/// A few experiments a row carry no decimals.
+/// Formats an interval without decimals, because a row has only a few experiments.
 std::string whole_percents(const Interval& interval) {
   return fmt::format("<span class=\"interval\">{:.0f} to {:.0f}&nbsp;%</span>", 100.0 * interval.lower,
                      100.0 * interval.upper);
@@ -64,7 +64,7 @@ std::string matrix_table(const Study& study, const KindFindings& kind) {
                   fmt::format("{:g}&nbsp;% interval", 100.0 * study.aggregate.confidence), rows));
 }
 
-/// The matrix as a heat map, true CVs from top to bottom.
+/// Draws the matrix as a heat map, with the true CVs from top to bottom.
 Panel matrix_panel(const Study& study, const KindFindings& kind) {
   const ConfusionMatrix& confusion = kind.confusion;
   const Eigen::Index classes = confusion.classes();

@@ -14,9 +14,10 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kWrongLoops = 6;  // a page of a few hundred kilobytes more
+constexpr std::size_t kWrongLoops = 6;  // they add a few hundred kilobytes to the page
 
-/// What the fault does to the CV that it is on, as a distance from 1: of twice the variance as of half of it.
+/// Returns the effect of the fault on its CV, as a distance from 1: twice the variance counts as much as half
+/// of it.
 double cost(const ExperimentRecord& record) {
   const Eigen::Index cv = record.draw.true_cv();
   return cv >= 0 && cv < record.ivar_basis.size() ? std::abs(std::log(record.ivar_basis(cv))) : 0.0;
@@ -28,7 +29,7 @@ struct Candidate {
   std::int64_t index;
 };
 
-/// Those that may be shown for each reason, in the order of the archive.
+/// The experiments that may be shown for each reason, in the order of the archive.
 struct Candidates {
   std::vector<Candidate> faulty, healthy, wrong;
 
@@ -49,7 +50,7 @@ struct Candidates {
   }
 };
 
-/// The one with the median cost: neither the clearest nor the faintest.
+/// Returns the candidate with the median cost, which is neither the clearest nor the faintest.
 std::vector<Candidate> middle_one(std::vector<Candidate> of) {
   std::stable_sort(of.begin(), of.end(),
                    [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
@@ -63,7 +64,8 @@ std::vector<Candidate> costliest(std::vector<Candidate> of) {
   return of;
 }
 
-/// The CVs that a verdict is about, and the MV of a mismatched channel; the others would only fill the page.
+/// Keeps the panels of the CVs that a verdict is about, and of the MV of a mismatched channel. The others
+/// would only fill the page.
 void keep_panels(Figure& figure, const Study& study, const ExperimentRecord& record) {
   const AssessmentRecord* const chain = record.diagnosed();
   std::vector<Eigen::Index> kept{record.draw.true_cv(), chain == nullptr ? -1 : chain->predicted_cv};

@@ -15,8 +15,8 @@ namespace {
 const Pen kMeasured{colour::kBlue, Dash::solid, Mark::dot, 2.5, 0.8};
 const Pen kReported{colour::kVermillion, Dash::none, Mark::hollow_diamond, 1.0, 1.3};
 
-/// The shares that a reader asks for first: where the chain of the thesis was asked those of no other method,
-/// which are compared in a section of their own.
+/// Returns the shares that a reader asks for first. If the chain of the thesis was run, these are only its
+/// own shares: a separate section compares the other methods.
 std::vector<const Finding*> headline(const ReportInput& input) {
   const bool of_chain = input.findings().chain() != nullptr;
   std::vector<const Finding*> chosen;
@@ -43,7 +43,7 @@ Figure headline_figure(const ReportInput& input) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Finding& value = *values[i];
     const std::string name = row_name(input.findings(), value);
-    const double at = rows - 1.0 - static_cast<double>(i);  // the first one on top
+    const double at = rows - 1.0 - static_cast<double>(i);  // the first one is on top
     const Interval& interval = value.interval;
     y.words[values.size() - 1 - i] = name;
     measured.push_back(

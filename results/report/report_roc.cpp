@@ -23,8 +23,8 @@ std::string point_name(const RocPoint& point) {
                          : fmt::format(", precision {:.1f} %", 100.0 * point.precision));
 }
 
-/// One axis against the other, in percent, over all thresholds; `chance` is what guessing gives at both ends
-/// of x.
+/// Draws one rate against another, in percent, over all thresholds. `chance` is what guessing gives at both
+/// ends of x.
 Panel curve_panel(const SourceCurve& roc, const char* name, const std::string& title, const char* x_label,
                   double RocPoint::*x, const char* y_label, double RocPoint::*y,
                   const std::vector<double>& chance, const char* description) {

@@ -21,7 +21,7 @@ const Pen kAvailable{colour::kBlue, Dash::solid, Mark::none, 2.5};
 const Pen kFixed{colour::kVermillion, Dash::solid, Mark::none, 2.5};
 const Pen kFit{colour::kGrey, Dash::dashed, Mark::none, 1.2};
 
-/// Ratios of one CV and one parameter, multiplier by multiplier.
+/// Draws the ratios of one CV and one parameter for each multiplier.
 Panel ratio_panel(const Study& study, const S0Curve& curve, const std::string& parameter,
                   const std::vector<RatioSpread>& spreads) {
   const S0PerturbationOptions& options = study.s0_perturbation;
@@ -69,7 +69,7 @@ Figure ratio_figure(const ReportInput& input) {
   return figure;
 }
 
-/// The diagonal step response of `cv` in T0, with 0 before the first sample.
+/// Returns the diagonal step response of `cv` in T0, with 0 before the first sample.
 std::vector<double> diagonal_response(const NominalSensitivity& sensitivity, Eigen::Index cv) {
   std::vector<double> response{0.0};
   for (std::size_t a = 0; a < sensitivity.active.size(); ++a)

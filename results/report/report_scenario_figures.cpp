@@ -25,7 +25,7 @@ const Pen kOutside{colour::kGreen, Dash::none, Mark::square, 1.0, 1.2};
 
 constexpr double kRowHeight = 24;  // pixels
 
-/// Few digits, so that a field of a heat map holds them.
+/// Formats a value with few digits, so that it fits into a field of a heat map.
 std::string field_number(double value) {
   if (!std::isfinite(value))
     return "-";
@@ -37,7 +37,7 @@ bool is_affected(const ExperimentRecord& record, Eigen::Index cv) {
   return std::any_of(affected.begin(), affected.end(), [cv](const auto& a) { return a.cv == cv; });
 }
 
-/// An axis with a word for each row, the first one on top.
+/// Returns an axis with a word for each row, the first one on top.
 Axis rows_axis(std::vector<std::string> words) {
   std::reverse(words.begin(), words.end());
   const auto last = static_cast<double>(words.size()) - 1.0;
@@ -51,13 +51,13 @@ std::vector<std::string> scenario_words(const Campaign& campaign) {
   return words;
 }
 
-/// How deep the colour of an index is: the whole depth_of_index a factor of 4 away from 1.
+/// Returns the depth of the colour of an index. It is deepest at a factor of 4 from 1.
 double depth_of_index(double index) {
   return std::clamp(0.2 + 0.6 * std::abs(std::log(index)) / std::log(4.0), 0.2, 0.8);
 }
 
-/// One field a CV and scenario, coloured outside of the band of impact. With `judged`, blue is an affected CV
-/// and orange another one, and an affected CV within the band stands in brackets.
+/// Draws one field per CV and scenario, coloured outside the band of impact. With `judged`, affected CVs are
+/// blue and others orange, and an affected CV within the band stands in brackets.
 Panel index_panel(const Campaign& campaign, const char* name, const char* title, bool judged) {
   const Study& study = campaign.study;
   const std::vector<std::string> words = scenario_words(campaign);
@@ -100,7 +100,7 @@ Figure index_figure(const Campaign& campaign) {
   return figure;
 }
 
-/// co_dkts and co_dskn of the affected and of the flagged CVs, a row each.
+/// co_dkts and co_dskn of the affected and of the flagged CVs, one row each.
 struct IndicatorRows {
   std::vector<std::string> words;
   std::vector<NamedPoint> kurtosis, skewness;
@@ -111,7 +111,7 @@ struct IndicatorRows {
         if (record.chain().flags(cv) || is_affected(record, cv))
           add(campaign.study, record, cv);
     }
-    // The first row on top.
+    // The first row is on top.
     for (std::vector<NamedPoint>* points : {&kurtosis, &skewness})
       for (NamedPoint& point : *points)
         point.y = static_cast<double>(words.size()) - 1.0 - point.y;

@@ -12,12 +12,12 @@
 namespace mpm {
 namespace {
 
-/// Solver statistics of some experiments.
+/// Solver statistics of several experiments.
 struct Effort {
   std::int64_t experiments = 0, steps = 0;
   std::vector<double> iterations_per_step;
   double largest_residual = NAN;
-  std::int64_t worst = -1;  ///< experiment of the largest residual
+  std::int64_t worst = -1;  ///< experiment with the largest residual
 
   void add(const ExperimentRecord& record) {
     if (record.solver.steps <= 0)

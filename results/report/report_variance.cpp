@@ -16,7 +16,7 @@ namespace mpm {
 namespace {
 
 const Pen kOther{colour::kLightGrey, Dash::none, Mark::circle, 1.0, 0.32};
-/// The affected CV, by why one linear S0 does not describe the loop.
+/// The pen of the affected CV. It shows why one linear S0 does not describe the loop.
 Pen affected_pen(NonlinearCause cause) {
   switch (cause) {
     case NonlinearCause::unstable:
@@ -36,8 +36,8 @@ const Pen kIdentity{colour::kBlack, Dash::dashed, Mark::none, 1.0};
 struct Pairs {
   std::map<NonlinearCause, std::vector<NamedPoint>> affected;
   std::vector<NamedPoint> others;
-  double least = INFINITY, largest = -INFINITY;  ///< Ivar
-  double least_basis = INFINITY;                 ///< Ivar_basis
+  double least = INFINITY, largest = -INFINITY;  ///< of Ivar
+  double least_basis = INFINITY;                 ///< of Ivar_basis
 
   void add(const ReportInput& input, const ExperimentRecord& record) {
     const Study& study = input.campaign.study;
@@ -72,7 +72,8 @@ Pairs pairs_of(const ReportInput& input, ExperimentKind kind) {
   return pairs;
 }
 
-/// The regression line over the range of the pairs, at points that are evenly spaced on a logarithmic axis.
+/// Draws the regression line over the range of the pairs, at points that are evenly spaced on a logarithmic
+/// axis.
 void add_fit(PanelScript& panel, const LinearFit& fit, const Pairs& pairs) {
   constexpr int kPoints = 80;
   std::vector<double> x, y;
@@ -80,7 +81,7 @@ void add_fit(PanelScript& panel, const LinearFit& fit, const Pairs& pairs) {
     const double at = pairs.least * std::pow(pairs.largest / pairs.least, static_cast<double>(i) / kPoints);
     const double value = fit.intercept + fit.slope * at;
     if (value < pairs.least_basis)
-      continue;  // on its way to zero it would stretch the axis
+      continue;  // falling to zero, it would stretch the axis
     x.push_back(at);
     y.push_back(value);
   }
@@ -125,7 +126,7 @@ bool causes_are_known(const ReportInput& input) {
                      [](const KindFindings& kind) { return !kind.without_cause.empty(); });
 }
 
-/// What one linear S0 explains of the loops without each cause why it does not.
+/// Shows how much one linear S0 explains without the loops of each cause for which it cannot describe a loop.
 Table cause_table(const ReportInput& input) {
   Table table(
       fmt::format("R\xC2\xB2 of Ivar_{{basis}} on Ivar, all CVs, without the experiments that one linear "
