@@ -34,14 +34,14 @@ using BoardJson = nlohmann::ordered_json;
 
 constexpr const char* kBoardEnding = ".board.json";
 constexpr const char* kFormat = "mpmbench board 1";
-constexpr auto kReplace = BoardJson::error_handler_t::replace;  // what is no UTF-8
-constexpr std::int64_t kMostLoops = 100'000;                    // of a cell
-constexpr std::int64_t kTextsOfQuestions = 5;                   // all facts but LoopOutcome::told
+constexpr auto kReplace = BoardJson::error_handler_t::replace;  // for bytes that are not UTF-8
+constexpr std::int64_t kMostLoops = 100'000;                    // in a cell
+constexpr std::int64_t kTextsOfQuestions = 5;                   // all facts except LoopOutcome::told
 
-/// Means of shares that are kept as the sums of each world.
+/// Means of shares, which the file stores as sums over each world.
 struct KeptMean {
   const char* name;
-  /// May the loop have such a share?
+  /// Can the loop have such a share?
   bool (*counts)(const FaultTruth& truth, const LoopOutcome& said);
 };
 constexpr KeptMean kMeans[] = {
@@ -52,14 +52,15 @@ constexpr KeptMean kMeans[] = {
 constexpr const char* kReliability = "reliability";
 constexpr const char* kDelays[] = {"detection_delay", "false_alarms_a_day"};
 
-/// The study of a cell with every default, so that it is the same in another version of the program only if
-/// it means the same, and whenever it does: keys that came later count where they are used.
+/// Returns a digest of the study of a cell, with every default written out. Two versions of the program give
+/// the same digest exactly if the study means the same: a key that was added later counts only where it is
+/// used.
 std::string study_digest(const SuiteCell& cell) {
   const std::string text = lasting_text(cell.study);
   return sha256(std::as_bytes(std::span(text)));
 }
 
-/// The key of the letters of so many texts before: "outcomes", "outcomes_2", ...
+/// Returns the key of text number `text` of the outcomes: "outcomes", "outcomes_2", ...
 std::string outcome_key(std::size_t text) {
   return text == 0 ? "outcomes" : fmt::format("outcomes_{}", text + 1);
 }
@@ -70,9 +71,9 @@ constexpr std::pair<const char*, bool OutcomeScope::*> kThresholdFlags[] = {
     {"at_01", &OutcomeScope::at_01},
     {"at_not_mpm", &OutcomeScope::at_not_mpm}};
 
-// What is written.
+// Writing.
 
-/// To four digits; what JSON has no number for is a word.
+/// Rounds to four digits. A value that JSON cannot write as a number becomes a word or null.
 BoardJson rounded(double value) {
   if (std::isnan(value))
     return nullptr;
@@ -81,7 +82,7 @@ BoardJson rounded(double value) {
   return std::stod(fmt::format("{:.4g}", value));
 }
 
-/// [sum, number of values] of each world.
+/// Writes [sum, number of values] for each world.
 BoardJson clusters_json(const Estimate& estimate) {
   BoardJson clusters = BoardJson::array();
   for (const ClusterSum& cluster : estimate.clusters)
@@ -89,7 +90,7 @@ BoardJson clusters_json(const Estimate& estimate) {
   return clusters;
 }
 
-/// The texts of outcomes that are known of every method: fewer of one that was read from an older file.
+/// Returns how many texts of outcomes are known for every method. A method read from an older file has fewer.
 std::size_t known_texts(const Leaderboard& board) {
   std::size_t texts = outcome_text_count();
   for (const CellScores& cell : board.cells)
@@ -161,14 +162,14 @@ BoardJson methods_json(const Leaderboard& board) {
   return methods;
 }
 
-// What is read.
+// Reading.
 
-/// Printable ASCII, for terminals, pages and tables.
+/// Returns printable ASCII, for terminals, pages and tables.
 std::string words_in(const JsonEntry& entry) {
   return foreign_text(entry.text(), JsonEntry::kMostText);
 }
 
-/// As rounded() writes it.
+/// Reads a value that rounded() wrote.
 double rounded_in(const JsonEntry& entry) {
   if (entry.json().is_null())
     return kNaN;
@@ -178,7 +179,7 @@ double rounded_in(const JsonEntry& entry) {
   return entry.number();
 }
 
-/// One letter for each of so many loops.
+/// Reads one letter for each of `loops` loops.
 std::string letters_in(const JsonEntry& entry, std::size_t loops) {
   entry.require(entry.json().is_string() && entry.json().get_ref<const std::string&>().size() == loops,
                 fmt::format("a text of {} letters, one for each loop", loops));
@@ -191,7 +192,7 @@ std::string letters_in(const JsonEntry& entry, std::size_t loops) {
                    fmt::format("{}, or '{}'", what, kNoLoop));
 }
 
-/// What the suite draws for the loops of a cell: all of their truth but what they cost.
+/// What the suite draws for the loops of a cell: their whole truth, except for what they cost.
 struct DrawnLoops {
   std::vector<FaultTruth> truths = {};  ///< without `impact`
   std::vector<int> worlds = {};
@@ -209,10 +210,10 @@ DrawnLoops drawn_loops(const Study& study, std::int64_t experiments) {
   return drawn;
 }
 
-/// [sum, number of values] of each world.
+/// Reads [sum, number of values] for each world.
 Estimate mean_in(const JsonEntry& entry, const KeptMean& mean, const CellScores& cell,
                  const LoopOutcomes& outcomes, double confidence) {
-  std::vector<std::int64_t> most;  // of the loops that may have a share, of each world
+  std::vector<std::int64_t> most;  // in each world: the loops that may have a share
   for (std::size_t i = 0; i < cell.truths.size(); ++i) {
     const auto world = static_cast<std::size_t>(std::int64_t{cell.worlds[i]} + 1);
     most.resize(std::max(most.size(), world + 1));
@@ -232,7 +233,8 @@ Estimate mean_in(const JsonEntry& entry, const KeptMean& mean, const CellScores&
   return clustered_mean(std::move(clusters), confidence);
 }
 
-/// [sum of the stated probabilities, number of loops, of them right] of each bin, of so many loops.
+/// Reads [sum of the stated probabilities, number of loops, how many of them are right] for each bin. The
+/// bins have `loops` loops together.
 Reliability reliability_in(const JsonEntry& entry, std::int64_t loops) {
   const std::vector<JsonEntry> list = entry.list();
   entry.require(list.size() == Reliability::kBins, fmt::format("{} bins", Reliability::kBins));
@@ -253,7 +255,7 @@ Reliability reliability_in(const JsonEntry& entry, std::int64_t loops) {
   return reliability;
 }
 
-/// Of a cell in which methods watch moving windows.
+/// Reads the delay in a cell in which methods watch moving windows.
 Estimate delay_in(const JsonEntry& entry, const Study& study, std::size_t loops) {
   entry.require(study.monitoring.has_value(), "nothing: the cell has no moving windows");
   const std::vector<JsonEntry> parts = entry.list();
@@ -268,7 +270,7 @@ Estimate delay_in(const JsonEntry& entry, const Study& study, std::size_t loops)
   return delay;
 }
 
-/// What a method of this scope said about the loops of a cell.
+/// Reads what a method with this scope said about the loops of a cell.
 LoopOutcomes outcomes_in(const JsonEntry& entry, const CellScores& cell, const OutcomeScope& scope) {
   const std::size_t loops = cell.truths.size(), count = outcome_text_count();
   std::vector<std::string> texts{letters_in(entry.at(outcome_key(0)), loops)};
@@ -332,10 +334,10 @@ MethodScores scores_in(const JsonEntry& entry, const CellScores& cell, const Stu
 struct BoardMethod {
   std::string name;
   OutcomeScope scope;
-  std::size_t texts;  ///< of its outcomes
+  std::size_t texts;  ///< how many texts its outcomes have
 };
 
-/// `texts`: how many the file has of each.
+/// `texts`: how many texts the file has for each method.
 std::vector<BoardMethod> methods_in(const JsonEntry& entry, std::int64_t texts) {
   std::vector<BoardMethod> methods;
   for (const JsonEntry& method : entry.list()) {
@@ -356,7 +358,7 @@ std::vector<BoardMethod> methods_in(const JsonEntry& entry, std::int64_t texts) 
   return methods;
 }
 
-/// The loops, which are those that the suite draws.
+/// Reads the loops, which must be those that the suite draws.
 void read_loops(const JsonEntry& entry, const DrawnLoops& drawn, CellScores& cell) {
   const std::size_t loops = drawn.truths.size();
   const std::string letters = letters_in(entry.at("truths"), loops);
@@ -382,8 +384,8 @@ void read_loops(const JsonEntry& entry, const DrawnLoops& drawn, CellScores& cel
   cell.worlds = drawn.worlds;
 }
 
-/// The experiments of a run: as many as the suite has, or the first ones of the cell. Those of a cell that
-/// could not be run are none.
+/// Reads the number of experiments of a run: all of the suite, or the first ones of the cell. It is 0 for a
+/// cell that could not be run.
 std::int64_t experiments_in(const JsonEntry& entry, const Study& study, bool was_run) {
   const std::int64_t most = study.names_scenarios() ? study.experiment_count() : kMostLoops;
   const std::int64_t experiments = entry.at("experiments").whole(0, was_run ? most : 0);
@@ -430,7 +432,7 @@ CellScores cell_in(const JsonEntry& entry, const SuiteCell& of, const std::vecto
   return cell;
 }
 
-/// Of the whole suite or of a part of it, the cell of these names; null where it was left out.
+/// Returns the cell with these names, in the whole suite or a part of it; null if it was left out.
 const SuiteCell* cell_of(const Suite& suite, const std::string& plant, const std::string& family) {
   const auto found = std::find_if(suite.cells.begin(), suite.cells.end(), [&](const SuiteCell& cell) {
     return suite.plants[cell.plant].name == plant && suite.families[cell.family].name == family;
@@ -438,7 +440,7 @@ const SuiteCell* cell_of(const Suite& suite, const std::string& plant, const std
   return found == suite.cells.end() ? nullptr : &*found;
 }
 
-/// The place of a name that the suite has.
+/// Returns the position of a name, which the suite must have.
 std::size_t axis_place(const std::vector<SuiteAxis>& axis, const JsonEntry& name) {
   std::vector<std::string> names;
   for (const SuiteAxis& each : axis)
@@ -448,7 +450,7 @@ std::size_t axis_place(const std::vector<SuiteAxis>& axis, const JsonEntry& name
   return static_cast<std::size_t>(found - names.begin());
 }
 
-/// The cell that an entry is about; null where this part of the suite leaves its plant or family out.
+/// Returns the cell that an entry is about; null if this part of the suite leaves its plant or family out.
 const SuiteCell* cell_of(const Suite& suite, const JsonEntry& entry) {
   const std::size_t plant = axis_place(suite.plants, entry.at("plant")),
                     family = axis_place(suite.families, entry.at("family"));

@@ -8,25 +8,25 @@
 
 #include "analysis/findings/loop_outcome.hpp"
 
-// The loops of a board in its file: a letter of base64 (RFC 4648) for each, of six bits.
+// How the file of a board stores loops: a letter of base64 (RFC 4648), which has six bits, for each loop.
 
 namespace mpm {
 
-/// In place of a letter: a loop that did not run to its end, which no method has looked at.
+/// Replaces the letter of a loop that did not run to its end, so that no method has seen it.
 inline constexpr char kNoLoop = '-';
 
-/// The bits of a truth from the lowest: kind (3 bits, ExperimentKind), impact, one_cv.
+/// Writes the truths as letters. The bits from the lowest: kind (3 bits, ExperimentKind), impact, one_cv.
 std::string truth_letters(const LoopTruths& truths);
-/// None for a character that no truth has.
+/// Reads a truth; none if the letter is no truth.
 std::optional<FaultTruth> fault_truth(char letter);
 
-/// What a method said, in as many texts as its facts need: outcome_facts() from the lowest bit of the first
-/// letter on, none of them in two letters.
+/// Writes what a method said, in as many texts as its facts need. The facts are outcome_facts(), from the
+/// lowest bit of the first letter on; no fact is split between two letters.
 std::vector<std::string> outcome_letters(const LoopOutcomes& outcomes);
-/// The facts of one loop, from its letter in each text; texts that are missing have no bit set. None for
-/// characters that no outcome has.
+/// Reads the facts of one loop from its letter in each text. In a text that is missing, no bit is set. None
+/// if the letters are no outcome.
 std::optional<LoopOutcome> loop_outcome(const std::string& letters);
-/// How many texts there are.
+/// Returns how many texts an outcome needs.
 std::size_t outcome_text_count();
 
 }  // namespace mpm

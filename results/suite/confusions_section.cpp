@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-/// Those that some method of the board has loops of.
+/// Returns the kinds of which some method of the board has loops.
 template <class Kind>
 std::vector<Kind> used_by(const Leaderboard& board) {
   std::vector<Kind> used;
@@ -23,7 +23,7 @@ std::vector<Kind> used_by(const Leaderboard& board) {
   return used;
 }
 
-/// "no answer"
+/// Names an answer in a heading: "no answer".
 std::string answer_head(AnsweredSource answer) {
   switch (answer) {
     case AnsweredSource::no_answer:

@@ -22,13 +22,13 @@ Cell percent_cell(const PooledScores& scores, const RateRow& row) {
   return cell;
 }
 
-/// "-1 to 46"
+/// The range of shares in percent: "-1 to 46".
 std::string span_text(const std::vector<double>& shares) {
   const auto [least, most] = std::minmax_element(shares.begin(), shares.end());
   return fmt::format("{:.0f} to {:.0f}", 100 * *least, 100 * *most);
 }
 
-/// What each of the two factors does to a rate: of several methods.
+/// Says what each of the two factors does to a rate; empty unless there are several methods.
 std::string factors_sentence(const Leaderboard& board, const RateRow& row) {
   std::vector<double> without, with, gains;
   for (const InformationPair& pair : information_pairs(board)) {

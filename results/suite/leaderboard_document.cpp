@@ -18,8 +18,8 @@ namespace {
 
 using AllScores = std::vector<std::vector<PooledScores>>;  // [method][column]
 
-/// A share on a ground that is deeper the better it is, or the worse. Its marks: '*' for too many false
-/// alarms, '~' for verdicts on a part of the loops.
+/// Shows a share on a ground that is deeper for a higher share. Its marks: '*' for too many false alarms, '~'
+/// for verdicts on part of the loops only.
 Cell score_cell(const PooledScores& scores, const RateRow& row) {
   const Rate& rate = scores.rates.of(row);
   if (rate.total == 0)
@@ -36,7 +36,7 @@ const char* letter_of(LeaderboardTask task) {
   return task == LeaderboardTask::detection ? "D" : task == LeaderboardTask::location ? "L" : "S";
 }
 
-/// "DL.": what is passed.
+/// Shows which tasks are passed: "DL.".
 Cell passed_cell(const PooledScores& scores) {
   if (scores.cells == 0)
     return Number{};
@@ -46,7 +46,8 @@ Cell passed_cell(const PooledScores& scores) {
   return letters;
 }
 
-/// One row a method, one column a name; `cell` makes the entry of a method and a column.
+/// Makes a table with one row per method and one column per name; `cell` makes the entry of a method and a
+/// column.
 Table methods_table(const Leaderboard& board, std::string caption, const std::vector<std::string>& heads,
                     const auto& cell) {
   std::vector<Table::Column> columns{{"Method", Table::Align::left}};
@@ -62,7 +63,8 @@ Table methods_table(const Leaderboard& board, std::string caption, const std::ve
   return table;
 }
 
-/// With a column for each plant or family, and one for all of them; `cell` makes the entries from the scores.
+/// Makes a table with a column for each plant or family, and one for all of them; `cell` makes an entry from
+/// scores.
 Table axis_table(const Leaderboard& board, std::string caption, const std::vector<SuiteAxis>& axis,
                  const AllScores& scores, const auto& cell) {
   std::vector<std::string> heads;
@@ -89,7 +91,7 @@ Section scores_section(const Leaderboard& board, const char* id, const char* tit
   return section;
 }
 
-/// What the marks mean, and what is passed.
+/// Explains the marks, and says which families are passed.
 void add_legend(Section& section, const Leaderboard& board) {
   for (const LeaderboardTask task : kLeaderboardTasks) {
     const std::string nobody = listed(passed_by_nobody(board, task));
@@ -134,7 +136,8 @@ Cell estimate_cell(const PooledScores& scores, std::string_view name) {
   return cell;
 }
 
-/// Of a suite of worlds: who tells the source of a fault, and who names the channel whose repair pays.
+/// For a suite of worlds: which method tells the source of a fault, and which names the channel worth a
+/// repair.
 Section ranking_section(const Leaderboard& board) {
   Section section{.id = "ranking", .title = "Who is right in worlds", .shown = Shown::full};
   if (!board.in_worlds())
@@ -148,14 +151,14 @@ Section ranking_section(const Leaderboard& board) {
   return section;
 }
 
-/// With this many digits, and all of those before the point: 1616 instead of 1.62e+03.
+/// Formats a number with `digits` digits, but always with all digits before the point: 1616, not 1.62e+03.
 std::string plain_number(double value, int digits) {
   return std::isinf(value)                      ? "never"
          : value + 0.5 < std::pow(10.0, digits) ? fmt::format("{:.{}g}", value, digits)
                                                 : fmt::format("{:.0f}", value);
 }
 
-/// "94 (76 to 103); 0": the median delay of a method with its interval, and its false alarms a day.
+/// The median delay of a method with its interval, and its false alarms a day: "94 (76 to 103); 0".
 Cell delay_cell(const MethodScores& scores) {
   const Estimate &delay = scores.estimates["detection_delay"],
                  &alarms = scores.estimates["false_alarms_a_day"];
@@ -168,7 +171,7 @@ Cell delay_cell(const MethodScores& scores) {
   return alarms.count == 0 ? text : text + "; " + plain_number(alarms.value, 2);
 }
 
-/// By plant, of the families in which methods watched moving windows.
+/// Shows delays by plant, for the families in which methods watched moving windows.
 Section delays_section(const Leaderboard& board) {
   Section section{.id = "delays", .title = "How long it takes", .shown = Shown::full};
   for (std::size_t family = 0; family < board.families.size(); ++family) {
@@ -194,7 +197,7 @@ Section delays_section(const Leaderboard& board) {
   return section;
 }
 
-/// A table a score, a column for each family that has a reference.
+/// Shows one table per score, with a column for each family that has a reference.
 Section reference_section(const Leaderboard& board) {
   Section section{.id = "reference", .title = "Against the reference", .shown = Shown::full};
   std::vector<std::string> heads;
@@ -216,7 +219,7 @@ Section reference_section(const Leaderboard& board) {
   return section;
 }
 
-/// What was not run, and which method gave no verdict on what.
+/// Says which methods gave no verdict on which loops, and which cells were not run.
 Section silences_section(const Leaderboard& board) {
   Section section{.id = "silences", .title = "No verdict", .shown = Shown::full};
   Sentences sentences;
@@ -237,7 +240,7 @@ Section silences_section(const Leaderboard& board) {
   return section;
 }
 
-/// What is counted, on which loops; of the page alone.
+/// Explains what is counted, and on which loops; only on the page.
 Section cells_section(const Leaderboard& board) {
   Section section{.id = "cells", .title = "Families, plants and cells", .shown = Shown::page};
   Sentences counted;

@@ -15,14 +15,14 @@ namespace {
 const Pen kOthers{colour::kBlue, Dash::solid, Mark::dot, 1.2, 0.7};
 const Pen kOwn{colour::kVermillion, Dash::solid, Mark::diamond, 2.4, 1.1};
 
-/// A row a method, in the same order in all panels.
+/// Draws one row per method, in the same order in all panels.
 Panel column_panel(const Leaderboard& board, const std::vector<std::size_t>& order,
                    const BoardColumn& column) {
   const auto rows = static_cast<double>(order.size());
   Axis y{.label = "", .lower = -0.6, .upper = rows - 0.4};
   for (const std::size_t method : order)
     y.words.push_back(board.methods[method] + part_mark(board.overall[method]));
-  std::reverse(y.words.begin(), y.words.end());  // the first one on top
+  std::reverse(y.words.begin(), y.words.end());  // the first one is on top
   const MethodNumber number_text = method_number(column.name);
   PanelScript panel(number_text.name, number_text.heading,
                     {.label = number_text.low_is_good ? "% of loops, left is good" : "%, right is good",

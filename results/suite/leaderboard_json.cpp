@@ -25,12 +25,12 @@ SuiteJson axis_json(const std::vector<SuiteAxis>& axis) {
   return list;
 }
 
-/// Can a board have the number? Those of worlds stand in the boards of worlds alone.
+/// Can the board have this number? Numbers on worlds are only in boards of worlds.
 bool has_number(const Leaderboard& board, StudyFeature of) {
   return board.in_worlds() || (of != StudyFeature::worlds && of != StudyFeature::calibrated_worlds);
 }
 
-/// The bins that hold a loop.
+/// Lists the bins that hold a loop.
 SuiteJson reliability_json(const Leaderboard& board, const Reliability& reliability) {
   SuiteJson bins = SuiteJson::array();
   for (const Reliability::Bin& bin : reliability.bins())
@@ -42,7 +42,7 @@ SuiteJson reliability_json(const Leaderboard& board, const Reliability& reliabil
   return bins;
 }
 
-/// Rows with a loop, and every answer.
+/// Lists the truths that have a loop, each with every answer.
 SuiteJson confusions_json(const SourceConfusions& confusions) {
   SuiteJson json = SuiteJson::object();
   for (const ToldSource truth : enumerators<ToldSource>())
@@ -52,7 +52,7 @@ SuiteJson confusions_json(const SourceConfusions& confusions) {
   return json;
 }
 
-/// The forecast of frequencies, and what methods gain over it.
+/// Returns the forecast from frequencies, and the skill of methods relative to it.
 SuiteJson forecast_json(const Leaderboard& board, const SourceProbabilities& frequencies) {
   SuiteJson json;
   for (std::size_t i = 0; i < frequencies.size(); ++i)
@@ -112,7 +112,7 @@ SuiteJson along(const Leaderboard& board, const std::vector<SuiteAxis>& axis,
   return json;
 }
 
-/// Null where a method has no rank.
+/// Lists the ranks; null if a method has no rank.
 SuiteJson ranking_json(const Leaderboard& board) {
   SuiteJson json = SuiteJson::array();
   const auto rank = [](const std::optional<int>& place) {
@@ -125,7 +125,7 @@ SuiteJson ranking_json(const Leaderboard& board) {
   return json;
 }
 
-/// Of each of one's own methods; only the sentence of one that cannot be ranked.
+/// Returns the standing of each own method; only the sentence if it cannot be ranked.
 SuiteJson standing_json(const Leaderboard& board) {
   SuiteJson json = SuiteJson::object();
   for (std::size_t method = 0; method < board.methods.size(); ++method) {
@@ -154,7 +154,7 @@ SuiteJson standing_json(const Leaderboard& board) {
   return json;
 }
 
-/// The ranks of questions_section(), by rate and method.
+/// Returns the ranks of questions_section(), by rate and method.
 SuiteJson questions_json(const Leaderboard& board) {
   SuiteJson json = SuiteJson::object();
   for (const std::string_view rate : question_rates())
@@ -164,7 +164,7 @@ SuiteJson questions_json(const Leaderboard& board) {
   return json;
 }
 
-/// The numbers of information_section().
+/// Returns the numbers of information_section().
 SuiteJson information_json(const Leaderboard& board) {
   SuiteJson json = SuiteJson::array();
   for (const InformationPair& pair : information_pairs(board))
@@ -184,7 +184,7 @@ SuiteJson information_json(const Leaderboard& board) {
   return json;
 }
 
-/// Of each method on the moving windows of a cell.
+/// Returns the delays and false alarms of each method on the moving windows of a cell.
 SuiteJson delays_json(const Leaderboard& board, const CellScores& cell) {
   SuiteJson json{{"time_unit", cell.time_unit}, {"methods", SuiteJson::object()}};
   for (std::size_t method = 0; method < board.methods.size(); ++method)

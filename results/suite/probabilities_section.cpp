@@ -55,7 +55,7 @@ Table scores_table(const Leaderboard& board) {
   return table;
 }
 
-/// "none 36 %, mpm 24 %, ...": what the reference states of every loop.
+/// The probabilities that the reference states for every loop: "none 36 %, mpm 24 %, ...".
 std::string frequencies_text(const SourceProbabilities& frequencies) {
   std::string text;
   for (std::size_t i = 0; i < frequencies.size(); ++i)
@@ -101,7 +101,7 @@ Figure reliability_figure(const Leaderboard& board) {
   return figure;
 }
 
-/// The numbers of the figure, a column a bin that some method uses.
+/// Makes a table of the numbers of the figure, with a column for each bin that some method uses.
 Table bins_table(const Leaderboard& board) {
   std::vector<std::size_t> used;
   for (std::size_t bin = 0; bin < Reliability::kBins; ++bin)

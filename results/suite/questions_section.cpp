@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-/// "97 (94 to 99) #1"; without a rank where the method does not answer the question.
+/// "97 (94 to 99) #1"; without the rank if the method does not answer the question.
 Cell answer_cell(const Leaderboard& board, std::size_t method, const RateRow& row) {
   const PooledScores& scores = board.overall[method];
   const Rate& rate = scores.rates.of(row);

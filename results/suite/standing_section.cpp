@@ -20,8 +20,8 @@ std::string percent_text(const Number& number) {
                      100 * number.interval.upper);
 }
 
-/// "naming the source of a fault: order, 89 % (86 to 90)"; empty where nobody has a number. Methods that
-/// answer on a part of the loops only are not among them.
+/// "naming the source of a fault: order, 89 % (86 to 90)"; empty if no method has a number. Methods that
+/// answer only on part of the loops do not count.
 std::string best_of(const Leaderboard& board, const BoardColumn& column) {
   std::vector<std::string> best;
   Number most;
@@ -37,7 +37,7 @@ std::string best_of(const Leaderboard& board, const BoardColumn& column) {
   return best.empty() ? "" : fmt::format("{}: {}, {}", column.task, in_a_row(best), percent_text(most));
 }
 
-/// Who is best at what, in a sentence.
+/// Says in one sentence which method is best at what.
 std::string best_sentence(const Leaderboard& board) {
   std::vector<std::string> best;
   for (const BoardColumn& column : board_columns(board))
