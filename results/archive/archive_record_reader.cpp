@@ -90,7 +90,7 @@ void require_consistent(const ExperimentRecord& record, const Study& study, cons
   }
 }
 
-/// Does the study say more about its experiments than the variables of an archive do?
+/// Tells whether the study says more about its experiments than the variables of an archive do.
 bool has_further_draws(const Study& study) {
   return study.names_scenarios() || !study.has_plain_faults();
 }

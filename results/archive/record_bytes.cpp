@@ -40,7 +40,7 @@ void read(ByteReader& reader, const RecordRow& row, ExperimentRecord& record) {
   });
 }
 
-/// Does the record come from an archive that lacks this row? It then has no number there.
+/// Tells whether the record is from an archive that lacks this row: then it has no number there.
 bool is_lacking(const RecordRow& row, const ExperimentRecord& record) {
   if (row.since == 0)
     return false;

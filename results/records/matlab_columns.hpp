@@ -22,7 +22,7 @@ bool is_matlab(std::string_view content);
 /// | N x 1 or 1 x N numbers, also logical | x                                                         |
 /// | N x c numbers                        | the names of a cell array of c texts, or x.1, x.2, ...    |
 /// | N x 1 or 1 x N cell array of texts   | x                                                         |
-/// | N x n characters                     | x, a text a row                                           |
+/// | N x n characters                     | x, one text per row                                       |
 /// | others                               | none                                                      |
 ///
 /// N is the length of the variable `time`. If `time` is empty, N is the length of the variable with a usual

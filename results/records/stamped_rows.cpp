@@ -168,7 +168,7 @@ class RowsReader {
 
   void warn(std::string text) { file_.warnings.push_back(std::move(text)); }
 
-  // --- A row a time stamp ---
+  // --- One row per time stamp ---
 
   std::optional<std::size_t> time_column() const {
     if (!data_.time.empty())
@@ -352,7 +352,7 @@ class RowsReader {
     return column > tag && again ? fmt::format("{}.{}", file_.names[tag], name) : name;
   }
 
-  // --- A row a value ---
+  // --- One row per value ---
 
   std::size_t long_column(const char* key, const std::string& named,
                           const std::optional<std::size_t>& found) const {

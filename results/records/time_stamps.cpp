@@ -25,7 +25,7 @@ namespace mpm {
 namespace {
 
 constexpr double kSecondsOfDay = 86400.0;
-constexpr double kEarliestDate = -62167305600.0, kLatestDate = 253402387200.0;  // years 0 to 9999, and a day
+constexpr double kEarliestDate = -62167305600.0, kLatestDate = 253402387200.0;  // years 0 to 9999 +- one day
 constexpr const char* kForms =
     "numbers, or dates such as 2024-10-27 02:59:30, 2024-10-27T02:59:30Z, 27.10.2024 02:59, 10/27/2024 2:59 "
     "PM, 27-Oct-24 02:59:30, with months of any language; data.time_unit or data.time_format for others";

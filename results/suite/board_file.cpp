@@ -41,7 +41,7 @@ constexpr std::int64_t kTextsOfQuestions = 5;                   // all facts exc
 /// Means of shares, which the file stores as sums over each world.
 struct KeptMean {
   const char* name;
-  /// Can the loop have such a share?
+  /// Tells whether the loop can have such a share.
   bool (*counts)(const FaultTruth& truth, const LoopOutcome& said);
 };
 constexpr KeptMean kMeans[] = {

@@ -25,7 +25,7 @@ SuiteJson axis_json(const std::vector<SuiteAxis>& axis) {
   return list;
 }
 
-/// Can the board have this number? Numbers on worlds are only in boards of worlds.
+/// Tells whether the board can have this number: numbers on worlds are only in boards of worlds.
 bool has_number(const Leaderboard& board, StudyFeature of) {
   return board.in_worlds() || (of != StudyFeature::worlds && of != StudyFeature::calibrated_worlds);
 }

@@ -25,7 +25,7 @@ std::string scenario_verdict_text(const Study& study, const ExperimentRecord& re
 /// model".
 std::string acf_text(const AcfComparison& acf);
 
-/// Does the loop differ from its nominal output, in speed or in oscillation?
+/// Tells whether the loop differs from its nominal output in speed or in oscillation.
 bool acf_differs(const AcfComparison& acf);
 
 }  // namespace mpm
