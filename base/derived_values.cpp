@@ -12,7 +12,7 @@ struct DerivedValues::Kept {
   struct Entry {
     std::mutex making;
     std::shared_ptr<void> value;
-    double seconds = 0.0;  ///< that it took
+    double seconds = 0.0;  ///< processor time that the value took
   };
 
   PaidBy paid;

@@ -10,16 +10,16 @@
 
 namespace mpm {
 
-/// Who pays for a derived value in processor time (thread_seconds()): the first caller that asks for it, or
-/// each caller, as if each made it.
+/// To whom the processor time (thread_seconds()) of a derived value is charged: the first caller that asks
+/// for the value, or each caller, as if each had computed it.
 enum class PaidBy : std::int8_t { first, each };
 
 /// Values that are derived from one object: a record, a benchmark, a world. Each is computed at the first
-/// request and kept for later requests. Its type and its key name it among the values of this thing.
+/// request and kept for later requests. Its type and its key identify it among the values of this object.
 ///
-/// Nothing is kept before keep(), and nothing in a copy, which may be changed: there each caller makes its
-/// own. The owner must not change what the values are derived from after keep(). Threads may ask at once: one
-/// of them makes the value, and the others wait for it.
+/// Nothing is kept before keep() is called. A copy keeps nothing either, since it may be changed: its callers
+/// compute each value anew. After keep() the owner must not change what the values are derived from. Threads
+/// may ask at the same time: one of them computes the value, and the others wait for it.
 class DerivedValues {
  public:
   DerivedValues();
@@ -29,11 +29,12 @@ class DerivedValues {
   DerivedValues& operator=(DerivedValues&&) noexcept;
   ~DerivedValues();
 
-  /// Keeps values that are computed from now on, but none that were computed before.
+  /// Keeps the values that are computed from now on, and drops those that were kept before.
   void keep(PaidBy paid);
 
-  /// The value of this key, to which `make` returns a std::shared_ptr. It must not ask for this value
-  /// itself. An exception of `make` goes to whoever asks, and the next one to ask tries again.
+  /// Returns the value of this key. If it is not kept yet, `make` computes it and returns a std::shared_ptr
+  /// to it; `make` must not ask for the same value. If `make` throws, the caller gets the exception, and the
+  /// next caller tries again.
   template <class Value, class Make>
   std::shared_ptr<Value> of(const std::string& key, const Make& make) const {
     return std::static_pointer_cast<Value>(found(typeid(Value), key, [&make]() -> std::shared_ptr<void> {

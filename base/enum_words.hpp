@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// The words of an enumeration whose values count from 0, one each, by which messages, archives, bytes, JSON
-/// and TOML name them. Beside the enumeration stands
+/// The words by which messages, archives, bytes, JSON and TOML name the values of an enumeration. The values
+/// count from 0, and each has one word. Beside the enumeration, define for example
 ///
 ///   template <>
 ///   inline constexpr auto kWords<FindingForm> = word_list("share", "number");
@@ -31,7 +31,7 @@ constexpr std::string_view to_string(Enum value) {
   return place < kWords<Enum>.size() ? kWords<Enum>[place] : "unknown";
 }
 
-/// The value that a word stands for; none for another word.
+/// Returns the value that a word stands for, or none if no value has this word.
 template <WordedEnum Enum>
 constexpr std::optional<Enum> enumerator(std::string_view word) {
   for (std::size_t place = 0; place < kWords<Enum>.size(); ++place)

@@ -19,8 +19,8 @@ class InputError : public std::invalid_argument {
   explicit InputError(const std::string& text) : std::invalid_argument(text) {}
 };
 
-/// An input under which a plant has no steady state: bad input where it comes from a model or a study. A
-/// closed loop whose plant cannot rest where the loop begins has failed instead (run_closed_loop()).
+/// An input under which a plant has no steady state. If it comes from a model or a study, it is bad input. If
+/// a closed loop begins where its plant cannot rest, the loop has failed instead (run_closed_loop()).
 class NoSteadyState : public InputError {
  public:
   using InputError::InputError;

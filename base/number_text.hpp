@@ -17,13 +17,12 @@ struct NumberWord {
 
 /// The description of a number wherever it is shown: in archives, tables, figures and documents.
 struct NumberText {
-  std::string name;          ///< in the form of a variable name, unique among the numbers beside it
-  std::string meaning;       ///< what it is, in one line, with its equation
-  std::string unit = "1";    ///< "1", "degrees", "samples", ...
-  std::string special = {};  ///< how to read special values; none when empty
-  std::vector<NumberWord> words =
-      {};                    ///< of a verdict or a position, all that it can be; none for a quantity
-  std::string heading = {};  ///< of tables and figures, "I_{MPM}"; none when empty
+  std::string name;                    ///< in the form of a variable name, unique among the numbers beside it
+  std::string meaning;                 ///< what it is, in one line, with its equation
+  std::string unit = "1";              ///< "1", "degrees", "samples", ...
+  std::string special = {};            ///< how to read special values; empty: there are none
+  std::vector<NumberWord> words = {};  ///< all values of a verdict or a position; empty for a quantity
+  std::string heading = {};            ///< in tables and figures, such as "I_{MPM}"; empty: none
 };
 
 /// Words for 0, 1, 2, ...
@@ -48,7 +47,7 @@ template <WordedEnum Enum>
 std::vector<NumberWord> enum_words() {
   return numbered(kWords<Enum>);
 }
-/// Those of some values; each has a to_string().
+/// The words of some values, from the to_string() of each.
 template <class Enumerators>
 std::vector<NumberWord> enum_words(const Enumerators& enumerators) {
   std::vector<NumberWord> words;

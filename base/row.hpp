@@ -19,40 +19,40 @@
 #include "base/number_text.hpp"
 #include "base/row_major.hpp"
 
-// A number is a row: its description, its shape, and how it is taken out of its owner and put back. Tables
-// of rows are what archives, bytes of shards, comparisons, CSV and JSON iterate over.
+// A row describes a number: its text, its shape, and how it is taken out of its owner and put back. Archives,
+// the bytes of shards, comparisons, CSV and JSON iterate over tables of rows.
 
 namespace mpm {
 
 /// How the values of a row are taken out of an owner and put back, in the order of a file: the last dimension
-/// fastest. Without `set` they follow from others and are not put back.
+/// varies fastest. If there is no `set`, the values follow from others and are not put back.
 template <class Owner, class T>
 struct RowAccess {
   std::function<void(const Owner&, T* values)> get;
   std::function<void(Owner&, const T* values)> set = {};
 };
 
-/// Where a row takes part.
+/// Where a row is used.
 enum class RowUse {
   everywhere,
-  archive_only,  ///< follows from the others
-  bytes_only,    ///< differs from run to run, so that no archive has it and no comparison looks at it
+  archive_only,  ///< the value follows from other rows
+  bytes_only,    ///< the value differs from run to run, so that archives omit it and comparisons ignore it
 };
 
-/// One number of an `Owner`, or an array of them, of the type that it has in a file.
+/// One number of an `Owner`, or an array of numbers, with the type that they have in a file.
 template <class Owner>
 struct Row {
   NumberText text;
-  std::vector<std::string> dimensions;  ///< after that of the owners
-  std::vector<std::size_t> shape;       ///< their lengths
+  std::vector<std::string> dimensions;  ///< names, after the dimension of the owners
+  std::vector<std::size_t> shape;       ///< lengths of the dimensions
   std::variant<RowAccess<Owner, std::int8_t>, RowAccess<Owner, std::int32_t>, RowAccess<Owner, std::int64_t>,
                RowAccess<Owner, double>, RowAccess<Owner, std::string>>
       access;
   RowUse use = RowUse::everywhere;
-  /// First minor version of archives that has it; 0: all have it. Owners that are read from an earlier one
-  /// keep their default.
+  /// First minor version of archives that has this row; 0: all have it. Owners that are read from an archive
+  /// of an earlier version keep their default.
   int since = 0;
-  std::string coordinates = {};  ///< a variable with further coordinates, such as `time`; none when empty
+  std::string coordinates = {};  ///< a variable with further coordinates, such as `time`; empty: none
 
   std::size_t size() const {
     return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
@@ -94,7 +94,7 @@ void put_values(const Row<Owner>& row, Owner& owner, Fill fill) {
       row.access);
 }
 
-/// The values of one owner as numbers; those of texts are NaN.
+/// Returns the values of one owner as numbers; a text becomes NaN.
 template <class Owner>
 std::vector<double> numbers_of(const Row<Owner>& row, const Owner& owner) {
   std::vector<double> numbers(row.size(), kNaN);
@@ -106,7 +106,7 @@ std::vector<double> numbers_of(const Row<Owner>& row, const Owner& owner) {
   return numbers;
 }
 
-/// Puts numbers back. A row of whole numbers takes -1 for NaN.
+/// Puts numbers back. In a row of whole numbers, -1 replaces NaN.
 template <class Owner>
 void put_numbers(const Row<Owner>& row, Owner& owner, const double* numbers) {
   put_values(row, owner, [&]<class T>(std::vector<T>& values) {
@@ -141,8 +141,9 @@ Row<Owner> value_row(NumberText text, std::function<T(const Owner&)> get,
   return {std::move(text), {}, {}, std::move(access)};
 }
 
-/// One member, in the file as in memory except for its type. A value that a whole number cannot take, or
-/// that has no word in an enumeration with words, leaves the member as it is.
+/// One member, stored as it is in memory except for its type. If a value that is put back does not fit a
+/// whole-number member, or has no word although the row of an enumeration has words, the member stays
+/// unchanged.
 template <class T, class Owner, class Lens>
 Row<Owner> member_row(NumberText text, Lens lens) {
   return value_row<T, Owner>(
@@ -164,7 +165,7 @@ Row<Owner> member_row(NumberText text, Member Owner::*member) {
   return member_row<T, Owner, Member Owner::*>(std::move(text), member);
 }
 
-/// A vector of each owner; NaN in the file where it is empty.
+/// One vector of each owner; the elements that it lacks are NaN in the file.
 template <class Owner, class Lens>
 Row<Owner> vector_row(NumberText text, std::string dimension, Eigen::Index size, Lens lens) {
   RowAccess<Owner, double> access{
@@ -178,7 +179,7 @@ Row<Owner> vector_row(NumberText text, std::string dimension, Eigen::Index size,
   return {std::move(text), {std::move(dimension)}, {static_cast<std::size_t>(size)}, std::move(access)};
 }
 
-/// A matrix of each owner, row by row; NaN in the file where it is empty.
+/// One matrix of each owner, row by row; if it is empty, all elements are NaN in the file.
 template <class Owner, class Lens>
 Row<Owner> matrix_row(NumberText text, std::vector<std::string> dimensions, Eigen::Index rows,
                       Eigen::Index columns, Lens lens) {
@@ -199,7 +200,7 @@ Row<Owner> matrix_row(NumberText text, std::vector<std::string> dimensions, Eige
           std::move(access)};
 }
 
-/// The row of a part as a row of the whole.
+/// Turns the row of a part into a row of the whole.
 template <class Whole, class Part, class Lens>
 Row<Whole> of_part(const Row<Part>& row, Lens lens) {
   return std::visit(
@@ -223,7 +224,8 @@ std::vector<Row<Whole>> of_part(const std::vector<Row<Part>>& rows, Lens lens) {
   return list;
 }
 
-/// The row of one of `count` equal parts, which stand in a vector, as a row of the whole along `dimension`.
+/// Turns the row of a part into a row of the whole, which holds `count` equal parts in a vector. The parts
+/// become the dimension `dimension`.
 template <class Whole, class Part, class Lens>
 Row<Whole> of_each(const Row<Part>& row, std::string dimension, std::size_t count, Lens lens) {
   return std::visit(

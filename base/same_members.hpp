@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-// Equality of structures that a defaulted operator== cannot compare: Eigen's == asks for vectors of one
-// length, and no NaN equals itself, though it stands for "none" in some members.
+// Equality of structures that a defaulted operator== cannot compare: Eigen's == requires vectors of equal
+// length, and NaN does not equal itself, although it stands for "none" in some members.
 
 namespace mpm {
 
@@ -23,8 +23,8 @@ inline bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return a.size() == b.size() && a == b;
 }
 
-/// Are all members the same, one by one? The tuples are made of structured bindings, which do not compile
-/// when a member is added to the structure and not to them.
+/// Tells whether all members are the same, one by one. The tuples are made of structured bindings: if a
+/// member is added to the structure but not to the bindings, the code does not compile.
 template <class... Members>
 bool same_members(const std::tuple<Members...>& a, const std::tuple<Members...>& b) {
   return std::apply(

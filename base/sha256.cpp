@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kShownDigits = 16;  // enough against accidents, and short enough for a message
+constexpr std::size_t kShownDigits = 16;  // no accidental matches, and short enough for a message
 
 EVP_MD_CTX* context(const std::shared_ptr<void>& state) {
   return static_cast<EVP_MD_CTX*>(state.get());
@@ -53,7 +53,7 @@ std::string digest_of(std::string_view content) {
   return sha256(std::as_bytes(std::span(content))).substr(0, kShownDigits);
 }
 
-// In pieces: an archive with its loops may be longer than the memory.
+// Reads the file in pieces: an archive with its loops may not fit into memory.
 std::string digest_of_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> piece(std::size_t{1} << 16);

@@ -17,7 +17,7 @@ class Sha256 {
  public:
   Sha256();
   void add(std::span<const std::byte> piece);
-  /// Of all pieces; once, at the end.
+  /// Returns the SHA-256 of all pieces. Call it once, at the end.
   std::string digits();
 
  private:
@@ -26,7 +26,7 @@ class Sha256 {
 
 /// The first 16 digits of the SHA-256, by which people compare contents.
 std::string digest_of(std::string_view content);
-/// Of a file; if it cannot be read, that of an empty text.
+/// The same for the content of a file; a file that cannot be read counts as an empty text.
 std::string digest_of_file(const std::filesystem::path& path);
 
 }  // namespace mpm

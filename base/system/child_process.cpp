@@ -25,11 +25,11 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kIn = 0, kOut = 1, kError = 2;  // as the program numbers them
+constexpr std::size_t kIn = 0, kOut = 1, kError = 2;  // file descriptors in the program
 constexpr std::size_t kPieceBytes = std::size_t{1} << 16;
 constexpr std::size_t kKeptErrors = 400;  // bytes of stderr in a message
 
-/// The two ends of a pipe, closed at the end of its life unless they are taken.
+/// The two ends of a pipe. The destructor closes those that were not taken.
 class Pipe {
  public:
   Pipe() {
@@ -46,7 +46,7 @@ class Pipe {
 
   int read_end() const { return ends_[0]; }
   int write_end() const { return ends_[1]; }
-  /// The end that stays here, which does not block.
+  /// Takes the end that stays in this process and makes it non-blocking.
   int take(std::size_t end) {
     ::fcntl(ends_[end], F_SETFL, O_NONBLOCK);
     return std::exchange(ends_[end], -1);
@@ -56,8 +56,8 @@ class Pipe {
   std::array<int, 2> ends_{-1, -1};
 };
 
-/// A program that is gone must not end this one by SIGPIPE. The signal goes to the thread that writes: it is
-/// held back there for the time of a write, and taken away if it came.
+/// A program that is gone must not end this process by SIGPIPE. The signal goes to the thread that writes:
+/// there it is blocked during a write, and discarded if it came.
 class NoBrokenPipeSignal {
  public:
   NoBrokenPipeSignal() {
@@ -78,7 +78,8 @@ class NoBrokenPipeSignal {
   sigset_t pipe_{}, before_{};
 };
 
-/// What posix_spawn wants to know: a group of its own, and signals as a program finds them at its start.
+/// Attributes for posix_spawn: a process group of its own, and the signals that a program expects at its
+/// start.
 class SpawnAttributes {
  public:
   SpawnAttributes() {
@@ -120,7 +121,7 @@ class SpawnFiles {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Of what it takes to start any program, whichever it is.
+/// Tells whether resources are short that the start of any program needs.
 bool is_shortage(int error) {
   return error == EAGAIN || error == ENOMEM || error == EMFILE || error == ENFILE;
 }
@@ -195,11 +196,12 @@ void ChildProcess::read_errors() {
     if (last_errors_.size() > kKeptErrors)
       last_errors_.erase(0, last_errors_.size() - kKeptErrors);
     if (pid_ >= 0)
-      return;  // it may write without end
+      return;  // the program may never stop writing
   }
 }
 
-/// A program that closes its stdout usually ends at once, and then says more by its code than by our signal.
+/// A program that closes its stdout usually ends at once; its exit code then says more than a kill by us
+/// would.
 void ChildProcess::fail_by_end() {
   constexpr std::chrono::milliseconds kGrace(2000), kLook(2);
   const auto until = std::chrono::steady_clock::now() + kGrace;
@@ -212,7 +214,7 @@ void ChildProcess::fail_by_end() {
   }
   if (ended != pid_ || pid_ < 0)
     fail({"closed its stdin or stdout", false});
-  ::kill(-pid_, SIGKILL);  // what it has started itself
+  ::kill(-pid_, SIGKILL);  // the processes that it has started
   pid_ = -1;
   fail(process_end(status));
 }

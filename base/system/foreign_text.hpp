@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// One line of printable ASCII from what an outside program wrote, cut to `most` bytes and "...", for
-/// messages and archives.
+/// Turns what an outside program wrote into one line of printable ASCII for messages and archives. A longer
+/// text is cut to `most` bytes and "...".
 std::string foreign_text(std::string_view text, std::size_t most);
 
 }  // namespace mpm

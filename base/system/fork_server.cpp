@@ -25,10 +25,10 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kLongestSetting = 64;  // numbers, the time limit among them
+constexpr std::size_t kLongestSetting = 64;  // numbers, including the time limit
 
-/// A datagram with numbers and the right to use a socket: whoever asks the server sends it one end of a pair
-/// and needs no answer, so that threads and processes can ask it at the same time.
+/// A datagram with numbers and the right to use a socket. A thread or process that asks the server sends it
+/// one end of a socket pair and needs no answer, so that several can ask at the same time.
 class ServiceOrder {
  public:
   ServiceOrder() {
@@ -55,7 +55,7 @@ class ServiceOrder {
     return sent >= 0;
   }
 
-  /// The socket that came, and its numbers; none when nobody is left who could ask.
+  /// Returns the socket that came and fills `numbers`. Returns none if nobody is left who could ask.
   std::optional<int> receive(int server, std::vector<double>& numbers) {
     ssize_t received = 0;
     while ((received = ::recvmsg(server, &message_, 0)) < 0 && errno == EINTR) {
@@ -76,7 +76,7 @@ class ServiceOrder {
   msghdr message_{};
 };
 
-/// Stands between the user of a service and its process.
+/// Passes messages between the user of a service and the process of the service.
 void mediate(int socket, const ForkedService::Serve& serve, double time_limit) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::vector<double> numbers;
@@ -98,7 +98,7 @@ void mediate(int socket, const ForkedService::Serve& serve, double time_limit) {
 
 void make_services(int socket, const ForkServer::MakeService& make) {
   ::signal(SIGCHLD, SIG_IGN);          // nobody asks how a mediator ended
-  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // of what one leaves behind that was killed
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // reap what a killed mediator leaves behind
   std::vector<double> setting;
   for (;;) {
     ServiceOrder order;
@@ -129,12 +129,12 @@ ForkServer::~ForkServer() {
     ::close(socket_);
     return;
   }
-  ::shutdown(socket_, SHUT_RDWR);  // it ends, with all that it has made, whoever else has this socket
+  ::shutdown(socket_, SHUT_RDWR);  // ends the server and all that it made, even if others hold this socket
   ::close(socket_);
-  constexpr int kLooks = 3000;  // of a millisecond
+  constexpr int kLooks = 3000;  // one per millisecond
   for (int look = 0; ::waitpid(pid_, nullptr, WNOHANG) == 0; ++look) {
     if (look == kLooks)
-      ::kill(pid_, SIGKILL);  // somebody has stopped it
+      ::kill(pid_, SIGKILL);  // somebody has suspended it
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }
@@ -157,7 +157,7 @@ ServedProcess::~ServedProcess() {
   ::close(socket_);
 }
 
-/// The mediator has a time limit of its own; this one is for a mediator that somebody has stopped.
+/// The mediator has its own time limit; the one here is for a mediator that somebody has suspended.
 std::vector<double> ServedProcess::ask(const std::vector<double>& request) {
   constexpr double kGrace = 5.0;  // s
   constexpr double kCentury = 3.2e9;
@@ -169,7 +169,7 @@ std::vector<double> ServedProcess::ask(const std::vector<double>& request) {
   std::exception_ptr failure;
   const Received got = receive_numbers(socket_, numbers, failure, ForkedService::kMostNumbers, &patience);
   if (got != Received::all) {
-    ::shutdown(socket_, SHUT_RDWR);  // a late answer would be that to the next question
+    ::shutdown(socket_, SHUT_RDWR);  // a late answer would pass for the answer to the next request
     if (got == Received::late)
       throw ForeignFailure(fmt::format("no answer within {} s", time_limit_));
     throw SurroundingsFailure("the process that waits for it has ended");

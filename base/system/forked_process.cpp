@@ -44,7 +44,7 @@ std::exception_ptr failure_of(MessageKind kind, const std::string& text) {
                                            : std::make_exception_ptr(ForeignFailure(text));
 }
 
-/// Kills those that are there now.
+/// Kills the children that exist now.
 void kill_children() {
   std::ifstream list("/proc/thread-self/children");
   for (pid_t child = 0; list >> child;)
@@ -57,11 +57,11 @@ int leave_parent(int socket) {
   constexpr int kSocket = 3;  // after the standard streams
   for (int signal = 1; signal < NSIG; ++signal)
     ::signal(signal, SIG_DFL);
-  ::signal(SIGINT, SIG_IGN);  // of the terminal: its parent decides
+  ::signal(SIGINT, SIG_IGN);  // Ctrl-C: the parent decides
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::dup2(socket, kSocket);
-  ::close_range(kSocket + 1, ~0U, 0);  // before one is opened: there may be no other left
+  ::close_range(kSocket + 1, ~0U, 0);  // before /dev/null is opened: else no number may be left
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (int stream = 0; stream < kSocket; ++stream)
     ::dup2(nowhere, stream);
@@ -95,7 +95,7 @@ ForkedProcess fork_process(int socket_type, const std::function<void(int)>& work
 }
 
 void end_children() {
-  constexpr int kLooks = 2000;  // of a millisecond: what makes processes faster than that is not waited for
+  constexpr int kLooks = 2000;  // one per millisecond; children that multiply faster than that remain
   for (int look = 0; look < kLooks; ++look) {
     kill_children();
     pid_t ended = 0;

@@ -43,7 +43,7 @@ ForkedService::ForkedService(const Serve& serve, double time_limit, std::size_t 
   const ForkedProcess made = fork_process(SOCK_STREAM, [&](int socket) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ::setsid();
-    if (::getppid() == parent)  // else it died before the line above
+    if (::getppid() == parent)  // else the parent died before prctl()
       serve_until_closed(socket, serve, most);
   });
   pid_ = made.pid;
@@ -84,14 +84,15 @@ std::vector<double> ForkedService::ask(const std::vector<double>& request, int u
 void ForkedService::end() {
   if (pid_ <= 0)
     return;
-  ::kill(-pid_, SIGKILL);  // there is nothing that it could still finish
-  ::kill(pid_, SIGKILL);   // it may have had no time for a session
+  ::kill(-pid_, SIGKILL);  // it has nothing left to finish
+  ::kill(pid_, SIGKILL);   // it may not have made its session yet
   while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
   }
   pid_ = -1;
 }
 
-/// Its socket is closed, as a rule because it has ended; what only closes it is given a moment.
+/// Its socket is closed, usually because the process has ended. A process that only closed it gets a moment
+/// to end.
 void ForkedService::fail_by_end() {
   constexpr std::chrono::milliseconds kGrace(2000), kLook(1);
   const Clock::time_point until = Clock::now() + kGrace;
@@ -103,7 +104,7 @@ void ForkedService::fail_by_end() {
     end();
     throw ForeignFailure("its process closed the connection to this one");
   }
-  ::kill(-pid_, SIGKILL);  // what it has started itself
+  ::kill(-pid_, SIGKILL);  // the processes that it has started
   pid_ = -1;
   const ProcessEnd end = process_end(status);
   const std::string text = fmt::format("its process {}", end.text);

@@ -10,30 +10,31 @@
 
 namespace mpm {
 
-/// A function that runs in a process of its own, so that a crash, a call that never returns and everything
-/// that it leaves in memory end with this process.
+/// A function that runs in its own process, so that a crash, a call that never returns and everything that
+/// the function leaves in memory end with this process.
 ///
-/// The process is a copy of this one, with a session of its own; what it prints goes nowhere, and it writes
-/// no core. What it sends is not trusted: it may write into its socket whatever it likes. It is to be made
-/// where there are no other threads (fork_process); where there are, a ForkServer makes it.
+/// The process is a copy of the calling one, with its own session; its output goes nowhere, and it writes no
+/// core. What it sends is not trusted: it may write anything into its socket. If there are other threads, a
+/// ForkServer must make the service (fork_process()).
 class ForkedService {
  public:
-  /// Numbers in, numbers out; its exceptions become those of ask().
+  /// Takes numbers and returns numbers; its exceptions become those of ask().
   using Serve = std::function<std::vector<double>(const std::vector<double>&)>;
 
-  static constexpr std::size_t kMostNumbers = std::size_t{1} << 17;  ///< of an answer, unless it is said
+  static constexpr std::size_t kMostNumbers = std::size_t{1} << 17;  ///< of an answer (default)
 
-  /// An answer that takes longer than `time_limit` seconds counts as none, as does one of more numbers than
-  /// `most`. Errors: std::system_error when no process can be made.
+  /// An answer that takes longer than `time_limit` seconds, or that has more numbers than `most`, counts as
+  /// none. Errors: std::system_error when no process can be made.
   ForkedService(const Serve& serve, double time_limit, std::size_t most = kMostNumbers);
   ForkedService(const ForkedService&) = delete;
   ForkedService& operator=(const ForkedService&) = delete;
   ~ForkedService();
 
-  /// The answer. Errors: ForeignFailure with what the function threw, how its process ended, or that the time
-  /// was up; after the last two the process is gone, with all of its group. The same happens at once when the
-  /// other end of the socket `user`, for which the answer is, is gone. SurroundingsFailure when somebody has
-  /// killed the process, and when what the function threw was of the surroundings.
+  /// Returns the answer. Errors: ForeignFailure with what the function threw, how its process ended, or that
+  /// the time was up; after the last two the process is gone, with all of its group. If the other end of the
+  /// socket `user`, for which the answer is, is gone, the process is ended at once as well.
+  /// SurroundingsFailure if somebody has killed the process, or if the function threw a failure of the
+  /// surroundings.
   std::vector<double> ask(const std::vector<double>& request, int user = -1);
 
  private:

@@ -13,10 +13,10 @@
 
 namespace mpm {
 
-/// A value of JSON that somebody else has written, and its place for messages: "FILE: cells[3]: study". It
-/// must live as long as what is read from it.
+/// A JSON value that somebody else has written, with its place for messages, such as "FILE: cells[3]: study".
+/// The JSON value must outlive all entries that are read from it.
 ///
-/// Each member function that asks for something throws InputError "PLACE: found ...; allowed: ..." where it
+/// Each member function that asks for something throws InputError "PLACE: found ...; allowed: ..." if it
 /// finds anything else, so that no message of the JSON library reaches a user.
 class JsonEntry {
  public:
@@ -35,22 +35,22 @@ class JsonEntry {
       refuse(allowed);
   }
 
-  /// An object with no other keys than these.
+  /// Requires an object whose keys are all known.
   void require_keys(const std::vector<std::string>& known) const;
   bool has(std::string_view key) const { return value_.is_object() && value_.contains(key); }
-  /// The value of a key that an object must have.
+  /// Returns the value of a key that the object must have.
   JsonEntry at(const std::string& key) const;
-  /// None where the object lacks the key or its value is null.
+  /// Returns none if the object lacks the key or its value is null.
   std::optional<JsonEntry> find(const std::string& key) const;
   std::vector<JsonEntry> list(const std::string& allowed = "a list") const;
 
   std::string text(std::size_t most = kMostText) const;
   std::vector<std::string> texts() const;
-  /// The place of the text among these.
+  /// Requires one of these texts and returns its index.
   std::size_t one_of(const std::vector<std::string>& known) const;
   bool flag() const;
   std::int64_t whole(std::int64_t least = 0, std::int64_t most = std::int64_t{1} << 53U) const;
-  /// A finite one.
+  /// Returns a number, which must be finite.
   double number(double least = -std::numeric_limits<double>::max(),
                 double most = std::numeric_limits<double>::max()) const;
 
@@ -59,7 +59,7 @@ class JsonEntry {
   std::string place_;
 };
 
-/// Parses a text as JSON. Throws InputError "PLACE: found no JSON; allowed: ..." for any other text.
+/// Parses a text as JSON. Throws InputError "PLACE: found no JSON; allowed: ..." if it is not JSON.
 JsonEntry::Json parsed_json(std::string_view text, const std::string& place, const std::string& allowed);
 
 }  // namespace mpm

@@ -13,7 +13,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kAlignment = 4;  // of what a note has
+constexpr std::size_t kAlignment = 4;  // bytes; of the parts of a note
 
 std::size_t aligned_note(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;

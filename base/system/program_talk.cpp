@@ -18,8 +18,8 @@ constexpr std::size_t kShownOfLine = 60;  // bytes, in a message
 
 using Json = nlohmann::ordered_json;
 
-/// A text that stands in JSON as it is, with quotes around it. There is no early end, so that the compiler
-/// looks at many characters at once.
+/// Tells whether a text needs only quotes around it to be JSON. The loop does not end early, so that the
+/// compiler can look at many characters at once.
 bool is_plain(const std::string& text) {
   unsigned char odd = 0;
   for (const signed char c : text)
@@ -27,7 +27,7 @@ bool is_plain(const std::string& text) {
   return odd == 0;
 }
 
-/// As Json::dump(), which takes twenty times as long for the texts of signals.
+/// Writes what Json::dump() writes, which takes twenty times as long for the texts of signals.
 void append(const Json& json, std::string& text) {
   if (json.is_object()) {
     char before = '{';
@@ -67,7 +67,7 @@ nlohmann::ordered_json ProgramTalk::ask(nlohmann::ordered_json message) {
     }
 }
 
-/// None: it answers an earlier message.
+/// Returns none if the line answers an earlier message.
 std::optional<nlohmann::ordered_json> ProgramTalk::answer_in(const std::string& line) const {
   nlohmann::ordered_json answer = nlohmann::ordered_json::parse(line, nullptr, false);
   const auto number = answer.is_object() ? answer.find("number") : answer.end();

@@ -35,13 +35,13 @@ class Trust {
   bool all_ = false;
 };
 
-/// One a process, as the programs are.
+/// There is one per process, like the programs that it allows.
 Trust& trust() {
   static Trust one;
   return one;
 }
 
-/// A file is another thing than a command of the same word.
+/// The first word distinguishes a file from a command of the same name.
 std::vector<std::string> words_of(const std::filesystem::path& fmu) {
   std::error_code no_status;
   const std::filesystem::path whole = std::filesystem::weakly_canonical(fmu, no_status);

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-// Which outside programs this process may start: only those that the user has named in a file. A study that
-// is read from an archive or from the part of a campaign may name programs of others, and opening a file must
-// start nothing.
+// The outside programs that this process may start: only those that the user has named in a file. A study
+// that is read from an archive or from the part of a campaign may name programs of others, and opening such a
+// file must start nothing.
 
 namespace mpm {
 
@@ -18,13 +18,13 @@ class UntrustedProgram : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// From now on this command line may be started, and this FMU loaded.
+/// Allows this process to start this command line, or to load this FMU, from now on.
 void trust_program(const std::vector<std::string>& command);
 void trust_fmu(const std::filesystem::path& file);
-/// From now on everything may: the user has said so (--trust-programs).
+/// Allows everything from now on: the user has asked for it (--trust-programs).
 void trust_every_program();
 
-/// Throws UntrustedProgram, which shows the command line or the path.
+/// Throws UntrustedProgram, with the command line or the path, unless the program or FMU is allowed.
 void require_trusted_program(const std::vector<std::string>& command);
 void require_trusted_fmu(const std::filesystem::path& file);
 

@@ -13,7 +13,7 @@ namespace mpm {
 
 namespace {
 
-/// Waits until the socket is ready for `events`; none: it is.
+/// Waits until the socket is ready for `events`. Returns none if it is, otherwise the reason for giving up.
 std::optional<Received> wait_for(int socket, short events, const SocketPatience& patience) {
   constexpr std::int64_t kLongest = 3600 * 1000;
   for (;;) {

@@ -17,21 +17,22 @@ class SurroundingsFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Is it of this kind? So are std::bad_alloc, and std::system_error: no files, processes, threads or memory
-/// left. Code that turns exceptions into outcomes lets these pass.
+/// Tells whether an error is of this kind. So are std::bad_alloc and std::system_error: no files, processes,
+/// threads or memory left. Code that turns exceptions into outcomes lets these pass.
 bool is_of_surroundings(const std::exception& error);
 
-/// Its text for people: that of the standard library for too little memory says nothing.
+/// Returns the text of an error for people. For lack of memory, the text of the standard library says
+/// nothing.
 std::string what_happened(const std::exception& error);
 
 /// How a process ended.
 struct ProcessEnd {
   std::string text;  ///< "ended by signal 11 (Segmentation fault)" or "ended with code 3"
-  /// By SIGHUP, SIGINT, SIGKILL or SIGTERM, which no program gets for an error of its own, or with the code
-  /// 128 + signal by which a shell reports them.
+  /// It ended by SIGHUP, SIGINT, SIGKILL or SIGTERM, which no program gets for an error of its own, or with
+  /// the code 128 + signal by which a shell reports these signals.
   bool from_outside;
 };
-/// By its status, as waitpid() gives it.
+/// Reads the end of a process from its status, as waitpid() gives it.
 ProcessEnd process_end(int status);
 
 }  // namespace mpm

@@ -16,14 +16,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFolderName = "mpmbench-temporary-";
-constexpr const char* kDrawn = "XXXXXX";  // of its name: what mkdtemp() takes
-constexpr mode_t kPermissions = 0777;     // of a mode, without its type
+constexpr const char* kDrawn = "XXXXXX";  // part of the name that mkdtemp() replaces
+constexpr mode_t kPermissions = 0777;     // permission bits of a mode, without the type
 
 int open_folder(const fs::path& path) {
   return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
 
-/// As mkdtemp() makes it, by this user: what somebody else has named so stays.
+/// Tells whether mkdtemp() can have made this folder for this user. Folders of this name that others made
+/// stay.
 bool is_ours(int folder) {
   struct stat status {};
   return ::fstat(folder, &status) == 0 && status.st_uid == ::geteuid() &&
@@ -48,8 +49,8 @@ void remove_left_folders(const fs::path& among) {
   }
 }
 
-/// Makes a folder and locks it; its open file, or -1 when somebody took it for one that was left, between
-/// these two. On a file system without locks nobody can.
+/// Makes a folder and locks it. Returns its open file, or -1 if another process took the folder for an
+/// abandoned one between these two steps. On a file system without locks no process can do that.
 int make_locked_folder(std::string& name) {
   if (::mkdtemp(name.data()) == nullptr)
     throw std::system_error(errno, std::generic_category(), name + ": no temporary folder");

@@ -9,9 +9,9 @@ namespace mpm {
 /// An empty folder "mpmbench-temporary-XXXXXX" among the temporary files (TMPDIR), which is removed with this
 /// object.
 ///
-/// The folder of a process that was killed stays until the same user makes the next one. A folder is locked
-/// (flock()) as long as its process lives, or one that was forked off and has its open files; a folder of
-/// this name that is not locked is removed.
+/// If a process was killed, its folder stays until the same user makes the next one. A folder is locked
+/// (flock()) as long as its process lives, or a process that was forked off and has its open files; a folder
+/// of this name that is not locked is removed.
 class TemporaryFolder {
  public:
   /// Errors: std::system_error when none can be made.
@@ -25,7 +25,7 @@ class TemporaryFolder {
  private:
   std::filesystem::path path_;
   int lock_ = -1;
-  pid_t owner_;  ///< which removes the folder: a copy of this process does not
+  pid_t owner_;  ///< the process that removes the folder; its forked copies do not
 };
 
 }  // namespace mpm

@@ -16,7 +16,7 @@ struct RunningProgram {
 
   ProgramTalk talk;
   bool is_new = true;        ///< it has not been asked yet
-  std::string context = {};  ///< that it was told last; empty: none
+  std::string context = {};  ///< context that it was told last; empty: none
 };
 
 /// The processes of one program that wait to be asked. Starting one may take as long as a hundred answers, so
@@ -24,19 +24,20 @@ struct RunningProgram {
 /// come from any thread.
 class WaitingPrograms {
  public:
-  /// As ProgramTalk; nothing is started.
+  /// Takes the arguments of a ProgramTalk; starts nothing.
   WaitingPrograms(std::string place, std::vector<std::string> command, double time_limit);
 
   const std::vector<std::string>& command() const { return command_; }
   double time_limit() const { return time_limit_; }
 
-  /// A process that waits, if possible one that was told this context last; otherwise a new one. Those of the
-  /// process that this one was forked from do not count. Errors: as ProgramTalk.
+  /// Returns a process that waits, if possible one that was told this context last; if none waits, a new one.
+  /// Processes that belong to the process from which this one was forked do not count. Errors: as
+  /// ProgramTalk.
   std::unique_ptr<RunningProgram> take(const std::string& context);
   std::unique_ptr<RunningProgram> take_new() const;
-  /// Takes back one that is in step: nothing has gone wrong with it.
+  /// Takes back a process that is in step: nothing has gone wrong with it.
   void give_back(std::unique_ptr<RunningProgram> program);
-  /// Ends those that wait: their surroundings have failed.
+  /// Ends the processes that wait: their surroundings have failed.
   void end_all();
 
  private:
