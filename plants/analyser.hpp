@@ -15,8 +15,8 @@ struct AnalyserTiming {
   int first = 0;   ///< sample at which the first sample of the stream is taken, 0 to period - 1
 
   bool is_analyser() const { return period > 1 || delay > 0; }
-  /// The sample s at which what is shown at sample k was taken: the largest first + i period <= k - delay;
-  /// -1 before the first analysis is there.
+  /// Returns the sample at which the value that is shown at sample k was taken: the largest first + i period
+  /// <= k - delay; -1 before the first analysis is there.
   Eigen::Index taken(Eigen::Index k) const;
 
   bool operator==(const AnalyserTiming&) const = default;
@@ -25,15 +25,15 @@ struct AnalyserTiming {
 /// Is one of the variables measured by an analyser?
 bool has_analysers(const std::vector<AnalyserTiming>& timings);
 
-/// The analysers of all CVs or MDs, one sample after the other: what is shown at sample k is y(taken(k)).
+/// The analysers of all CVs or MDs, one sample after the other. At sample k they show y(taken(k)).
 class AnalyserHold {
  public:
-  /// One timing a variable; empty: all are measured at every sample.
+  /// One timing for each variable; empty: all variables are measured at every sample.
   explicit AnalyserHold(const std::vector<AnalyserTiming>& timings);
 
   /// Starts at sample 0 and shows `y` (ny) until the first analyses are there.
   void reset(const Eigen::Ref<const Eigen::VectorXd>& y);
-  /// `y` (ny) at the next sample becomes what is shown. Allocates nothing.
+  /// Replaces `y` (ny), the values at the next sample, by the values that are shown. Allocates nothing.
   void pass(Eigen::Ref<Eigen::VectorXd> y);
 
  private:
@@ -47,22 +47,24 @@ class AnalyserHold {
   Eigen::Index sample_ = 0;
 };
 
-/// The analyses behind the values that an analyser has shown, `shown` (N), each at the sample at which it was
-/// taken; NaN at all other samples, and where an analysis is not there by the end.
+/// Returns the analyses behind the values that an analyser has shown, `shown` (N), each at the sample at
+/// which it was taken. All other samples are NaN, as are analyses that the record ends too early to show.
 Eigen::RowVectorXd analyses(const AnalyserTiming& timing, const Eigen::Ref<const Eigen::RowVectorXd>& shown);
 
-/// The timing with the `first` under which most changes of `shown` (N, NaN where missing) are new analyses.
+/// Returns the timing with the `first` that makes most changes of `shown` (N, NaN where missing) new
+/// analyses.
 AnalyserTiming with_first_of(AnalyserTiming timing, const Eigen::Ref<const Eigen::RowVectorXd>& shown);
 
-/// `signals` (n x N) as their analysers show them, `rest` (n) until the first analyses are there.
+/// Returns `signals` (n x N) as their analysers show them, and `rest` (n) until the first analyses are there.
 Eigen::MatrixXd as_shown(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd signals,
                          const Eigen::Ref<const Eigen::VectorXd>& rest);
 
-/// The signals behind `shown` (n x N), as they are known at the end of the record: each analysis from the
-/// sample at which it was taken on, held to the next one. Before the first one it is what was shown at the
-/// start.
+/// Returns the signals behind `shown` (n x N), as they are known at the end of the record: each analysis
+/// holds from the sample at which it was taken until the next one is taken. Before the first analysis the
+/// signal is what was shown at the start.
 Eigen::MatrixXd as_taken(const std::vector<AnalyserTiming>& timings, Eigen::MatrixXd shown);
-/// The same for the record of a plant, whose changes show when samples are taken (with_first_of()).
+/// The same for the record of a plant, where changes of `shown` tell when samples are taken
+/// (with_first_of()).
 Eigen::MatrixXd as_taken_in_record(std::vector<AnalyserTiming> timings, const Eigen::MatrixXd& shown);
 
 }  // namespace mpm

@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// What the output of a plant at sample k is.
+/// The meaning of the output of a plant at sample k.
 enum class OutputSampling : std::int8_t {
   snapshot = 0,  ///< its value at k Ts
   average = 1,   ///< its mean over [(k - 1) Ts, k Ts)

@@ -6,7 +6,7 @@
 
 namespace mpm {
 
-/// What became of a step of a plant.
+/// The outcome of a step of a plant.
 enum class PlantStatus {
   ok,
   failed,  ///< the equations could not be integrated; the plant has to be reset before it goes on
@@ -39,7 +39,7 @@ class Plant {
   /// InputError for a wrong size.
   virtual PlantStatus advance(const Eigen::Ref<const Eigen::VectorXd>& input) = 0;
 
-  /// Why advance() failed, for people.
+  /// Tells people why advance() failed.
   virtual std::string failure() const { return "the plant could not be integrated"; }
 
  protected:

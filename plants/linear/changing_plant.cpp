@@ -9,7 +9,7 @@
 namespace mpm {
 namespace {
 
-/// f of H = f H1.
+/// The factor f of H = f H1.
 double gain_factor(const TransferFunction& before, const TransferFunction& after) {
   if (before.is_integrating() || after.is_integrating() || before.is_zero() || after.is_zero())
     return 1.0;
@@ -18,7 +18,7 @@ double gain_factor(const TransferFunction& before, const TransferFunction& after
   return gain != 0.0 && factor != 0.0 ? factor : 1.0;
 }
 
-/// Both of a channel, one below the other, for each channel that changes.
+/// G and H1 of each channel that changes, one below the other.
 template <class Channels>
 TransferMatrix both_of(const Channels& channels, const TransferMatrix& before, const TransferMatrix& after) {
   const auto count = static_cast<Eigen::Index>(channels.size());

@@ -12,19 +12,19 @@
 namespace mpm {
 
 /// A linear plant that changes from one transfer matrix to another while it runs. a(k), from 0 to 1, is the
-/// part of the way that is done. A channel that changes from G to H, with H = f H1, where H1 has the static
-/// gain of G, is
+/// share of the change that is complete. Let a channel change from G to H = f H1, where H1 has the static
+/// gain of G. Its output is
 ///
 ///   y(k) = (1 - a(k)) G w + a(k) H1 w,   w(k) = (1 + (f - 1) a(k)) u(k).
 ///
-/// The gain changes at the input and the dynamics at the output, so that a plant at rest stays where it is
-/// when its time constant or its dead time changes, and answers through its own lag when its gain does. Where
-/// one of the two has no static gain or the gain 0, f = 1.
+/// The gain changes at the input and the dynamics change at the output. A plant at rest therefore stays where
+/// it is when its time constant or its dead time changes, and moves through its own lag when its gain
+/// changes. If G or H has no static gain or the gain 0, f = 1.
 class ChangingPlant final : public Plant {
  public:
-  /// `share` is a(k), one number a sample; after the last one it stays. It holds over the sample time before
-  /// sample k, so that means (OutputSampling::average) change by the same share. Errors: InputError for
-  /// matrices of different size, no share, a share outside [0, 1], or as LinearPlant.
+  /// `share` is a(k), one number for each sample; afterwards the last one holds. a(k) applies to the sample
+  /// time before sample k, so that means (OutputSampling::average) change by the same share. Errors:
+  /// InputError for matrices of different size, no share, a share outside [0, 1], or as LinearPlant.
   ChangingPlant(const TransferMatrix& before, const TransferMatrix& after, double sample_time,
                 Eigen::VectorXd share, OutputSampling sampling = OutputSampling::snapshot);
 
@@ -46,7 +46,7 @@ class ChangingPlant final : public Plant {
   void measure();
 
   Eigen::VectorXd share_;
-  std::vector<Channel> channels_;  ///< that change
+  std::vector<Channel> channels_;  ///< channels that change
   LinearPlant unchanged_;          ///< the other channels
   LinearPlant changing_;           ///< outputs 2i and 2i + 1: G and H1 of channel i under its w
   Eigen::VectorXd w_, output_;

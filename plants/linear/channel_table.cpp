@@ -65,7 +65,7 @@ std::vector<Entry> discretise_channels(const TransferMatrix& G, double sample_ti
   return entries;
 }
 
-/// The channels with at most one pole, their steady states and the inputs of these.
+/// Places the channels with at most one pole, with their steady states and the inputs that drive them.
 void place_first_order(ChannelTable& table, const std::vector<Entry>& entries) {
   std::vector<Eigen::Index> filled(static_cast<std::size_t>(table.output_count), 0);  // columns, by row
   const auto next_column = [&](const Entry& entry) {

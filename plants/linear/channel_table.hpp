@@ -18,9 +18,9 @@ struct ChannelWiring {
   std::ptrdiff_t input_previous = 0;  ///< place of u(k - delay - 1)
 };
 
-/// The channels with at most one pole, side by side: column c has the c-th of each output, in the order of
-/// the inputs, and zeros for an output that has fewer. Four rows of all columns then make four outputs. The
-/// state of each is its own output without direct effect (c = 1).
+/// The channels with at most one pole, side by side: column c holds the c-th of these channels of each
+/// output, in the order of the inputs, and zeros for an output that has fewer. Four rows of all columns then
+/// give four outputs. The state of each channel is its own output without direct effect (c = 1).
 struct FirstOrderChannels {
   using Rows = Eigen::Array4d;
   struct Place {
@@ -28,9 +28,9 @@ struct FirstOrderChannels {
     std::ptrdiff_t input_now;
   };
 
-  Eigen::Index rows = 0;                   ///< of a column: outputs, and zeros up to a multiple of four
+  Eigen::Index rows = 0;                   ///< length of a column: outputs, padded to a multiple of four
   Eigen::ArrayXd a, b_now, b_previous, d;  ///< rows x columns
-  std::vector<Place> places;               ///< of the channels
+  std::vector<Place> places;               ///< one for each channel
 
   Eigen::Index size() const { return a.size(); }
 };
@@ -51,10 +51,10 @@ struct GeneralChannel {
   ChannelWiring wiring;
 };
 
-/// The data of a channel of step coefficients beyond its state.
+/// The data, beyond its state, of a channel that has step coefficients.
 struct CoefficientChannel {
   Eigen::Index row, col;
-  Eigen::VectorXd step;  ///< that of DiscreteChannel, with its last value up to the length of the longest
+  Eigen::VectorXd step;  ///< as in DiscreteChannel; the last value fills it up to the longest
 };
 
 /// The discretised non-zero channels of a transfer matrix, sorted by number of poles. Immutable once built,
@@ -72,10 +72,10 @@ struct ChannelTable {
   std::vector<SecondOrderChannel> second_order;
   std::vector<GeneralChannel> general;
   std::vector<CoefficientChannel> coefficients;
-  Eigen::Index coefficient_count = 0;  ///< of the longest
+  Eigen::Index coefficient_count = 0;  ///< length of the longest step response
 
-  /// Steady state for a unit input; of an integrating channel that in which its rate is steady and its output
-  /// 0.
+  /// Steady state for a unit input. For an integrating channel, the state in which its rate is steady and its
+  /// output is 0.
   Eigen::VectorXd state_per_input;
   std::vector<Eigen::Index> state_col;  ///< input that drives each state
   Eigen::Index max_order = 0;

@@ -14,8 +14,9 @@
 namespace mpm {
 namespace {
 
-/// The response of H(s), which has no coefficients, to S(t): exact at multiples of T, and long enough for H
-/// to settle. S' is constant between coefficients: H S' / s is that of a held input.
+/// Returns the response of H(s), which has no coefficients, to S(t): exact at multiples of T, and long enough
+/// for H to settle. S' is constant between coefficients, so that H S' / s is the response of H / s to a held
+/// input.
 StepCoefficients response(const TransferFunction& H, const StepCoefficients& S) {
   const double T = S.interval();
   const Eigen::VectorXd values = S.sampled(T);

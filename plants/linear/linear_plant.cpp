@@ -80,7 +80,7 @@ PlantStatus LinearPlant::advance(const Eigen::Ref<const Eigen::VectorXd>& input)
   return PlantStatus::ok;
 }
 
-/// False when there is nothing to do: all inputs that are kept are this one, as in most of a free response.
+/// Returns false if there is nothing to do: all stored inputs equal this one, as in most of a free response.
 bool LinearPlant::push_input(const Eigen::Ref<const Eigen::VectorXd>& input) {
   const Eigen::Index length = table_->history_length;
   repeats_ = input == history_.col(newest_) ? repeats_ + 1 : 1;
@@ -103,8 +103,8 @@ void LinearPlant::read_inputs() {
   direct_ = channels.d * now_;
 }
 
-/// Four outputs at a time, and with them what they get from these channels: `update` sees the states of a
-/// column first.
+/// Sets the outputs, four at a time, to the sum of what these channels add to them. `update` is called for
+/// the states of each column before they are read.
 template <class Update>
 void LinearPlant::add_up_first_order(const Update& update) {
   using Rows = FirstOrderChannels::Rows;
@@ -158,7 +158,7 @@ void LinearPlant::advance_general(const double* newest) {
   }
 }
 
-/// Adds what the change from the newest input, which is still u(k-1), brings from sample k + 1 on.
+/// Adds the effect of the change from the newest stored input, which is still u(k-1), from sample k + 1 on.
 void LinearPlant::advance_coefficients(const Eigen::Ref<const Eigen::VectorXd>& input) {
   const Eigen::Index count = table_->coefficient_count;
   if (coming_ == count) {

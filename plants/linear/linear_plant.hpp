@@ -38,8 +38,8 @@ class LinearPlant final : public Plant {
   double sample_time() const override;
 
   /// Puts every channel at its steady state under the constant `steady_input` (input_count()), as if it had
-  /// acted for ever; one that integrates at the output 0 and a steady rate. The plant rests where these rates
-  /// cancel out in each output. Errors: InputError for a wrong size, or a number that is not finite.
+  /// acted for ever; an integrating channel has the output 0 and a steady rate. The plant rests if these
+  /// rates cancel out in each output. Errors: InputError for a wrong size, or a number that is not finite.
   void reset(const Eigen::Ref<const Eigen::VectorXd>& steady_input) override;
 
   /// y(k), output_count(): just before the input of sample k is applied.
@@ -72,19 +72,20 @@ class LinearPlant final : public Plant {
   // the newest one, in column newest_, then always stand side by side and no index has to be wrapped.
   Eigen::MatrixXd history_;
   Eigen::Index newest_;
-  Eigen::Index repeats_;  // of the newest input: so many in succession are equal
-  // Of the first-order channels: the input that acts at this sample, and what it and the one before add to
-  // the state and to the output.
+  Eigen::Index repeats_;  // how many of the newest inputs in succession are equal
+  // For the first-order channels: the input that acts at this sample, and what this input and the one before
+  // it add to the state and to the output.
   Eigen::ArrayXd now_, forced_now_, forced_previous_, direct_;
-  // What the channels of step coefficients add to y(k), y(k+1), ... if the inputs stay as they are, in rows
-  // from coming_ on, a column an output. Dynamic matrix control predicts in the same way. Twice as many rows
-  // as there are coefficients, so that they are moved once in as many samples.
+  // What the channels of step coefficients add to y(k), y(k+1), ... if the inputs stay as they are: rows from
+  // coming_ on, one column for each output. Dynamic matrix control predicts in the same way. There are twice
+  // as many rows as coefficients, so that the rows are moved only once in as many samples.
   Eigen::MatrixXd ahead_;
   Eigen::Index coming_ = 0;
 };
 
-/// The response of G from rest to `inputs` (n_in x N): outputs (ny x N), of which column k is sampled just
-/// before column k of the inputs acts. Errors: InputError for a wrong number of rows, or as discretise().
+/// Returns the response of G from rest to `inputs` (n_in x N): outputs (ny x N), whose column k is sampled
+/// just before column k of the inputs acts. Errors: InputError for a wrong number of rows, or as
+/// discretise().
 Eigen::MatrixXd simulate(const TransferMatrix& G, double sample_time,
                          const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                          OutputSampling sampling = OutputSampling::snapshot);

@@ -30,17 +30,17 @@ struct PlantModel {
   std::vector<Variable> mds;
   TransferMatrix G;
 
-  /// A channel with the coefficients of its step response, to which its parameters were fitted.
+  /// A channel that has the coefficients of its step response; its parameters were fitted to them.
   struct StepFit {
     Eigen::Index cv, input;
-    double error;  ///< of the fit, largest one, as a share of the largest coefficient
+    double error;  ///< largest error of the fit, as a share of the largest coefficient
 
     bool operator==(const StepFit&) const = default;
   };
   std::vector<StepFit> step_fits = {};
 
   /// Errors: InputError if the plant, its time unit or a variable has an empty name, two variables have the
-  /// same one, there is no CV or no MV, or G is not cvs x (mvs + mds).
+  /// same name, there is no CV or no MV, or G is not cvs x (mvs + mds).
   void validate() const;
 
   bool operator==(const PlantModel&) const = default;

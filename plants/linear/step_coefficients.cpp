@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRoundingOfPlace = 1e-9;  // of an interval
 
-/// x, or the whole number that it is except for rounding.
+/// Returns the nearest whole number if x differs from it by rounding only, otherwise x.
 double snapped(double x) {
   const double nearest = std::round(x);
   return std::abs(x - nearest) <= kRoundingOfPlace * std::max(1.0, std::abs(x)) ? nearest : x;

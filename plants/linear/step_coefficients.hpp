@@ -6,16 +6,16 @@
 
 namespace mpm {
 
-/// Sums of its time constants after which a transfer function has settled: e^-21 = 1e-9.
+/// A transfer function has settled after this many times the sum of its time constants: e^-21 = 1e-9.
 inline constexpr double kTimesToSettle = 21.0;
 
 /// A step response S(t) by its coefficients, as dynamic matrix control uses it: S(0) = 0, S(T) = s_1, ...,
-/// S(n T) = s_n, straight lines in between. After the last coefficient it stays there, or, of a channel that
+/// S(n T) = s_n, straight lines in between. After the last coefficient S stays there or, if the channel
 /// integrates, goes on with the last slope, (s_n - s_(n-1)) / T.
 ///
-/// Between coefficients S is off by at most T^2 / 8 times the largest curvature of the response that they
-/// were taken from. A value type: copies and changes of it share the coefficients. Changes move S along the
-/// time axis; what then lies at t <= 0 is cut off.
+/// Between coefficients S is off by at most T^2 / 8 times the largest curvature of the response from which
+/// the coefficients were taken. A value type: copies and changed versions share the coefficients. Changes
+/// move S along the time axis; what then lies at t <= 0 is cut off.
 class StepCoefficients {
  public:
   /// `interval` is T. Errors: InputError for fewer than two values, one that is not finite, or an interval
@@ -25,12 +25,12 @@ class StepCoefficients {
   /// S(t). A t within a relative 1e-9 of an interval from a coefficient gives this coefficient.
   double operator()(double t) const;
   double interval() const { return interval_; }
-  /// When the last coefficient is reached.
+  /// Time at which the last coefficient is reached.
   double end() const { return start_ + interval_ * static_cast<double>(values_->size()); }
   /// The last coefficient.
   double last() const { return gain_ * (*values_)(values_->size() - 1); }
   bool ramps() const { return ramps_; }
-  /// The last slope of one that ramps, 0 for any other.
+  /// The last slope if the response ramps, otherwise 0.
   double rate() const;
 
   /// S(Ts), S(2 Ts), ..., until the last coefficient is reached; at least two values.
@@ -41,7 +41,7 @@ class StepCoefficients {
 
   /// factor * S(t).
   StepCoefficients with_gain_scaled(double factor) const;
-  /// S(about + (t - about) / factor), and of one that ramps `factor` times that: its rate stays.
+  /// S(about + (t - about) / factor); if it ramps, `factor` times that, so that its rate stays.
   StepCoefficients with_time_scaled(double factor, double about) const;
   /// S(t - delta).
   StepCoefficients with_dead_time_shifted(double delta) const;

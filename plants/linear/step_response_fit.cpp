@@ -21,12 +21,12 @@ namespace {
 
 constexpr Eigen::Index kFewestResponseSamples = 8;
 constexpr double kUnsettledShare = 0.1;  // of the largest value: e^(-2.3), two or three time constants
-constexpr double kSettled = 0.01;        // of the largest value: what the last eighth may move
+constexpr double kSettled = 0.01;        // of the largest value: the most that the last eighth may move
 constexpr double kSameResponse = 1e-9;   // of the largest value
-constexpr double kFastestLag = 0.02;     // time constant, in samples: a jump within the first of them
-constexpr double kSlowestLag = 20.0;     // time constant, in records
+constexpr double kFastestLag = 0.02;     // time constant in samples: the response jumps within the first one
+constexpr double kSlowestLag = 20.0;     // time constant in lengths of the record
 constexpr double kLeastDamping = 0.05, kMostDamping = 20.0;
-constexpr double kShortestDeadTime = 1e-6;  // in samples; less is none
+constexpr double kShortestDeadTime = 1e-6;  // in samples; a shorter one counts as 0
 
 constexpr double kStillMoves = 0.3;  // slope at the end over the largest one: e^(-1.2)
 
@@ -40,8 +40,8 @@ Eigen::Index gain_count(StepForm form) {
   return form == StepForm::with_zero ? 2 : 1;
 }
 
-/// The misfit over (dead time in samples, log tau, log xi), in the form that Eigen's port of MINPACK asks
-/// for; time constants in samples.
+/// The misfit as a function of (dead time, log tau, log xi), in the form that Eigen's port of MINPACK
+/// requires; all times in samples.
 struct StepMisfit {
   using Scalar = double;
   using InputType = Eigen::VectorXd;
@@ -106,14 +106,14 @@ double rise_time(const Eigen::VectorXd& response, double share) {
   return static_cast<double>(k + 1);
 }
 
-/// From one sample to the next, the first one from 0.
+/// Changes from one sample to the next; the first one is the change from 0.
 Eigen::VectorXd increments_of(const Eigen::VectorXd& response) {
   Eigen::VectorXd increments = response;
   increments.tail(response.size() - 1) -= response.head(response.size() - 1);
   return increments;
 }
 
-/// Whether the response moves on at its end as it did before.
+/// Whether the response still moves at its end as it did before.
 bool still_moves(const Eigen::VectorXd& response) {
   const Eigen::Index part = std::max<Eigen::Index>(2, response.size() / 8);
   double largest = 0.0;
@@ -123,8 +123,9 @@ bool still_moves(const Eigen::VectorXd& response) {
          kStillMoves * largest;
 }
 
-/// Where the search begins: dead times from none to that at which the response is seen, dampings from an
-/// oscillation to two lags far apart. `response` is that of the form without its integrator.
+/// Starting points of the search: dead times from 0 to the one at which the response is first seen, dampings
+/// from an oscillation to two lags that are far apart. For a form with an integrator, `response` is that of
+/// the form without it.
 std::vector<Eigen::VectorXd> step_fit_starts(const Eigen::VectorXd& response, StepForm form) {
   const double seen = rise_time(response, 0.02) - 1.0, risen = rise_time(response, 0.6);
   std::vector<Eigen::VectorXd> points;
@@ -152,7 +153,7 @@ struct StepCandidate {
   Eigen::Index parameters = 0;
 };
 
-/// In the time unit of the study.
+/// The channel with these parameters, in the time unit of the study.
 TransferFunction channel_of(const StepMisfit& misfit, const Eigen::VectorXd& x, double sample_time) {
   const Eigen::VectorXd gains = misfit.gains(misfit.basis(x));
   Eigen::VectorXd numerator(gains.size());
@@ -261,13 +262,13 @@ TransferFunction by_coefficients(const StepResponseFit& fit, const Eigen::Vector
 std::optional<TransferFunction> with_fewest_digits(const TransferFunction& channel,
                                                    const Eigen::VectorXd& coefficients, double interval,
                                                    const Eigen::VectorXd& tolerances) {
-  constexpr int kMostDigits = 16;  // 17 are the number itself
+  constexpr int kMostDigits = 16;  // 17 digits give the number itself
   for (int digits = 1; digits <= kMostDigits; ++digits) {
     const auto shortened = [digits](double value) {
       return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
     };
     const bool is_dead =
-        channel.dead_time() > 0.5 * std::pow(10.0, -digits) * interval;  // no rest of a search
+        channel.dead_time() > 0.5 * std::pow(10.0, -digits) * interval;  // not a remnant of the search
     const TransferFunction shorter(channel.numerator().unaryExpr(shortened),
                                    channel.denominator().unaryExpr(shortened),
                                    is_dead ? shortened(channel.dead_time()) : 0.0);

@@ -24,12 +24,12 @@ namespace mpm {
 /// otherwise the coefficients stay as given. A value type: the `with_` functions return a changed copy.
 ///
 /// An output that integrates drifts, and is therefore observed through a washout: with behind_washout() the
-/// function is G(s) s / (s + 1 / T_w), which has no pole at the origin any more. Numerator and denominator
-/// are then those of the product; the changes of gain, time constants and dead time are those of G.
+/// function is G(s) s / (s + 1 / T_w), which no longer has a pole at the origin. Numerator and denominator
+/// are then those of the product, while changes of gain, time constants and dead time apply to G.
 ///
-/// A function may have the coefficients of its step response, from which its gains and whatever is simulated
-/// are then taken. The rational form is one fitted to them: it has the parameters (poles, residence time,
-/// dead time, G(s)), and its changes are changes of both.
+/// A function may have the coefficients of its step response. Its gains and all simulations then use these
+/// coefficients. The rational form is fitted to them and supplies the parameters (poles, residence time, dead
+/// time, G(s)); a change of the function changes both.
 class TransferFunction {
  public:
   /// Errors: InputError if a coefficient or the dead time is not finite, a polynomial is empty, the leading
@@ -55,10 +55,12 @@ class TransferFunction {
   /// Has a pole at the origin, hence no static gain.
   bool is_integrating() const { return !is_zero() && denominator_(order()) == 0; }
 
-  /// G(0), the last coefficient if there are some. Errors: InputError for an integrating channel.
+  /// G(0); the last coefficient if there are step coefficients. Errors: InputError for an integrating
+  /// channel.
   double static_gain() const;
 
-  /// lim s G(s), s -> 0: the rate of an integrating channel under a constant input of 1; 0 for any other.
+  /// lim s G(s), s -> 0: the rate of an integrating channel under a constant input of 1; 0 for other
+  /// channels.
   double rate_gain() const;
 
   /// G(s) of the rational form, with the dead time as e^{-theta s}. Not finite at a pole.
@@ -69,9 +71,9 @@ class TransferFunction {
 
   /// R(factor * s) e^{-theta s} for G(s) = R(s) e^{-theta s}: every time constant of the rational part, zeros
   /// included, is multiplied by `factor`; static gain and dead time stay. The step response of the rational
-  /// part obeys y_scaled(factor * t) = y(t). Of an integrating channel the rate gain stays, so that this is
-  /// factor * R(factor * s): one that only integrates stays as it is. Errors: InputError unless `factor` is
-  /// finite and positive.
+  /// part obeys y_scaled(factor * t) = y(t). For an integrating channel the rate gain stays, so that the
+  /// rational part becomes factor * R(factor * s): a pure integrator does not change. Errors: InputError
+  /// unless `factor` is finite and positive.
   TransferFunction with_time_scaled(double factor) const;
 
   /// G(s) e^{-delta s}: a dead-time mismatch. Errors: InputError if dead_time() + delta is negative or not
@@ -79,11 +81,11 @@ class TransferFunction {
   TransferFunction with_dead_time_shifted(double delta) const;
 
   /// The mean residence time of the rational part, a_{n-1} / a_n - b_{m-1} / b_m: the time constant of a
-  /// first-order function; 0 for a static one. Of an integrating channel that of s G(s), and behind a washout
-  /// that of G.
+  /// first-order function; 0 for a static one. For an integrating channel it is that of s G(s), and behind a
+  /// washout that of G.
   double residence_time() const;
 
-  /// Whether with_time_scaled() changes the function: false for one that is zero, static or only integrates.
+  /// Whether with_time_scaled() changes the function: false if it is zero, static or a pure integrator.
   bool has_time_constant() const;
 
   /// G(s) s / (s + 1 / time_constant): the output behind a first-order high-pass filter. The zero-order-hold
@@ -94,22 +96,24 @@ class TransferFunction {
   /// Time constant of the washout; 0 for none.
   double washout() const { return washout_; }
 
-  /// The same parameters, but simulated by the coefficients of a step response, which ramps where this
-  /// integrates. Errors: InputError as StepCoefficients.
+  /// The same parameters, but simulated with the coefficients of a step response, which ramps if this
+  /// function integrates. Errors: InputError as StepCoefficients.
   TransferFunction with_step_coefficients(const Eigen::VectorXd& values, double interval) const;
   TransferFunction with_step_coefficients(StepCoefficients step) const;
   /// The rational form alone.
   TransferFunction without_step_coefficients() const;
   const std::optional<StepCoefficients>& step_coefficients() const { return step_; }
 
-  /// How long the function remembers each single input: dead time, or last coefficient if that is later.
+  /// How long a single input must be remembered: the dead time, or until the last coefficient if that is
+  /// later.
   double memory() const { return step_ && step_->end() > dead_time_ ? step_->end() : dead_time_; }
 
-  /// Are all coefficients and the dead time the same? Other coefficients with the same G differ.
+  /// Are all coefficients and the dead time the same? Functions with the same G(s) but other coefficients
+  /// differ.
   friend bool operator==(const TransferFunction& a, const TransferFunction& b);
 
  private:
-  /// The same washout, if any, of another function.
+  /// Returns another function, behind the washout of this one if it has one.
   TransferFunction with_rational_part(Eigen::VectorXd numerator, Eigen::VectorXd denominator,
                                       double dead_time, std::optional<StepCoefficients> step) const;
 
@@ -117,8 +121,8 @@ class TransferFunction {
   Eigen::VectorXd denominator_;
   double dead_time_;
   double washout_ = 0;
-  Eigen::VectorXd own_numerator_ = {}, own_denominator_ = {};  ///< of G behind a washout
-  std::optional<StepCoefficients> step_ = {};                  ///< of G
+  Eigen::VectorXd own_numerator_ = {}, own_denominator_ = {};  ///< own coefficients of G, if behind a washout
+  std::optional<StepCoefficients> step_ = {};                  ///< step coefficients of G
 };
 
 /// p(s) q(s), coefficients in descending powers.

@@ -37,18 +37,18 @@ class TransferMatrix {
   /// Whether a channel of the row has a pole at the origin, so that constant inputs hold the output only if
   /// its rate is 0.
   bool is_integrating(Eigen::Index row) const;
-  /// Whether any row does.
+  /// Whether any row integrates.
   bool is_integrating() const;
 
   /// The final effect of a constant input of 1, rows() x cols(): on the output, G(0), or, in a row that
   /// integrates, on its rate, lim s G(s).
   Eigen::MatrixXd steady_gain() const;
 
-  /// The outputs at which a plant rests under a constant `input` (cols()), rows(): G(0) input; what
-  /// integrates counts from there (LinearPlant::reset()).
+  /// The outputs at which a plant rests under a constant `input` (cols()), rows(): G(0) input. An integrating
+  /// channel adds 0, as in LinearPlant::reset().
   Eigen::VectorXd steady_output(const Eigen::Ref<const Eigen::VectorXd>& input) const;
 
-  /// The rational forms alone of channels that have step coefficients.
+  /// The same matrix with only the rational forms of channels that have step coefficients.
   TransferMatrix without_step_coefficients() const;
 
   /// G(s) at one complex s, rows() x cols().

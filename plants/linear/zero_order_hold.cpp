@@ -71,7 +71,7 @@ Hold hold(const Realisation& form, double duration) {
   return {exponential.topLeftCorner(n, n), exponential.topRightCorner(n, 1)};
 }
 
-/// The same with the integral q of the output as its last state and its output: q' = C x + D u.
+/// Adds the integral q of the output, q' = C x + D u, as last state, which becomes the output.
 Realisation with_integral(const Realisation& form) {
   const Eigen::Index n = form.A.rows();
   Realisation longer{Eigen::MatrixXd::Zero(n + 1, n + 1), Eigen::VectorXd(n + 1),
@@ -82,7 +82,7 @@ Realisation with_integral(const Realisation& form) {
   return longer;
 }
 
-/// Of a channel whose last state is the integral of its output: that of one sample, over its length.
+/// Turns the last state, the integral of the output, into the mean of the output over one sample.
 void take_means(DiscreteChannel& channel, double sample_time) {
   const Eigen::Index last = channel.A.rows() - 1;
   channel.A.col(last).setZero();
@@ -115,7 +115,7 @@ Delay split_dead_time(double dead_time, double sample_time) {
 
 namespace {
 
-/// K / s and what is left of a channel without it; K = 0 for one that does not integrate.
+/// A channel split into K / s and the rest; K = 0 if the channel does not integrate.
 struct IntegratorApart {
   double rate_gain;
   TransferFunction rest;
@@ -132,8 +132,8 @@ IntegratorApart integrator_apart(const TransferFunction& channel) {
   return {K, {difference.head(channel.order()), denominator, channel.dead_time()}};
 }
 
-/// The filter of the samples y(k) of a channel, f(k) = y(k) - w(k), w(k+1) = a w(k) + (1 - a) y(k). With the
-/// integrator's state I apart, q = I - w takes the place of both:
+/// The channel behind the filter of its samples y(k), f(k) = y(k) - w(k), w(k+1) = a w(k) + (1 - a) y(k).
+/// With the integrator's state I split off, q = I - w replaces both I and w:
 ///
 ///   q(k+1) = a q(k) + K (integral of u over the sample) - (1 - a) y_rest(k),    f(k) = q(k) + y_rest(k).
 DiscreteChannel behind_washout(const TransferFunction& channel, double sample_time) {
@@ -157,8 +157,8 @@ DiscreteChannel behind_washout(const TransferFunction& channel, double sample_ti
   return result;
 }
 
-/// With F the response behind the washout, F_i = a F_(i-1) + S_i - S_(i-1), which after the last coefficient
-/// m is F_(i+1) = a F_i + Ts rate: what it then adds to F_m is the step response of a first-order channel
+/// The response F behind the washout is F_i = a F_(i-1) + S_i - S_(i-1). After the last coefficient m it
+/// becomes F_(i+1) = a F_i + Ts rate: what is then added to F_m is the step response of a first-order channel
 /// with m samples of dead time. Without a washout a = 1.
 DiscreteChannel of_coefficients(const StepCoefficients& S, double sample_time, double washout,
                                 OutputSampling sampling) {

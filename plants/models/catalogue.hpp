@@ -12,7 +12,8 @@ namespace mpm {
 /// The benchmark plant of this name. Errors: InputError for an unknown name; the text lists the known ones.
 PlantModel benchmark_plant(const std::string& name);
 
-/// The nonlinear plant behind it; none when the plant itself is linear. Errors: as benchmark_plant().
+/// The nonlinear plant behind the benchmark plant of this name; none if that plant is linear. Errors: as
+/// benchmark_plant().
 std::optional<NonlinearModel> nonlinear_benchmark_plant(const std::string& name);
 
 /// The names that benchmark_plant() knows, in the order of the catalogue.

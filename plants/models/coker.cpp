@@ -21,20 +21,20 @@ struct CokerChannel {
 
 // clang-format off
 constexpr std::array kChannels{
-  // MV2 and what follows CV11
+  // MV2: CV11 and the CVs that follow it
   CokerChannel{1, 2, 0.6, 30, 10}, CokerChannel{2, 2, 0.9, 25, 10}, CokerChannel{3, 2, -0.5, 40, 10, 10},
   CokerChannel{4, 2, 0.7, 35, 5}, CokerChannel{5, 2, 0.8, 20, 10}, CokerChannel{8, 2, -0.6, 45, 15},
   CokerChannel{10, 2, 0.9, 30, 5}, CokerChannel{11, 2, 1.0, 30, 10},
-  // MV4 and what follows CV12
+  // MV4: CV12 and the CVs that follow it
   CokerChannel{1, 4, -0.5, 40, 15}, CokerChannel{2, 4, 0.6, 30, 10}, CokerChannel{3, 4, 0.7, 30, 5},
   CokerChannel{4, 4, -0.6, 25, 10}, CokerChannel{6, 4, 0.9, 35, 10}, CokerChannel{12, 4, 1.0, 25, 5},
-  // The other MVs, at limits in the steady state
+  // The other MVs, which are at limits in the steady state
   CokerChannel{1, 1, 0.4, 50, 15, 15}, CokerChannel{7, 1, 0.8, 40, 10}, CokerChannel{9, 1, 0.7, 45, 10},
   CokerChannel{3, 3, 0.5, 35, 10}, CokerChannel{7, 3, -0.6, 30, 10}, CokerChannel{9, 3, -0.5, 30, 5},
   CokerChannel{8, 5, 0.5, 40, 10}, CokerChannel{11, 5, 1.2, 20, 5},
   CokerChannel{2, 6, 0.3, 50, 20, 15}, CokerChannel{7, 6, 0.7, 35, 5}, CokerChannel{9, 6, 0.4, 60, 15},
   CokerChannel{1, 7, 1.6, 30, 10}, CokerChannel{5, 7, 0.8, 30, 5}, CokerChannel{12, 7, 1.2, 20, 5},
-  // The exchange of drums (DV1) and the preparation of the next one (DV2)
+  // The exchange of drums (DV1) and the preparation of the next drum (DV2)
   CokerChannel{1, kDv1, 0.4, 25, 10}, CokerChannel{2, kDv1, 0.5, 30, 10}, CokerChannel{5, kDv1, -0.4, 25, 5},
   CokerChannel{7, kDv1, 0.6, 40, 10}, CokerChannel{8, kDv1, 0.6, 35, 10}, CokerChannel{9, kDv1, 0.5, 30, 10},
   CokerChannel{10, kDv1, -0.5, 30, 5}, CokerChannel{11, kDv1, 0.9, 25, 10},

@@ -32,7 +32,7 @@ TransferFunction tank(Eigen::VectorXd numerator, double rate) {
   return {std::move(numerator), Eigen::Vector2d(1, rate)};
 }
 
-// The tank above it in between: numerator / ((s + upper) (s + lower)).
+// The same with the tank above it in between: numerator / ((s + upper) (s + lower)).
 TransferFunction two_tanks(Eigen::VectorXd numerator, double upper, double lower) {
   return {std::move(numerator), Eigen::Vector3d(1, upper + lower, upper * lower)};
 }
@@ -46,7 +46,7 @@ Eigen::VectorXd differentiated(double gain) {
   return Eigen::Vector2d(gain, 0);
 }
 
-/// With the first `flows` of the external flows as MDs.
+/// The linear model with the first `flows` external flows as MDs.
 PlantModel linear_model(const char* name, const char* set, std::size_t flows, const char* title) {
   const QuadrupleTank process(quadruple_tank_parameters(set));
   const TransferMatrix all = process.linearised(quadruple_tank_operating_point());
@@ -97,7 +97,7 @@ TransferMatrix QuadrupleTank::linearised(const Eigen::Ref<const Eigen::VectorXd>
   for (Eigen::Index j = 0; j < into.cols(); ++j)
     for (Eigen::Index i = 0; i < 4; ++i) {
       const auto t = static_cast<std::size_t>(i);
-      // No input flows into a tank and into the one above it.
+      // No input flows both into a tank and into the tank above it.
       if (into(i, j) != 0.0)
         G(i, j) = tank(constant(into(i, j) / parameters_.area[t]), rate[t]);
       else if (i < 2 && into(i + 2, j) != 0.0)

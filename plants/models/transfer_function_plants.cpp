@@ -131,7 +131,7 @@ PlantModel ogunnaike_ray_column() {
 }
 
 PlantModel evaporator() {
-  // Poles of composition and pressure, and what they and the inputs make of the level.
+  // Poles of composition (X) and pressure (P), and slopes through which they act on pressure and level (L).
   constexpr double kX = 0.1, kP = 0.05579782, kXtoP = -0.02090766, kXtoL = 0.004181532, kPtoL = 0.00751231;
   struct Input {
     double x, p, l;  // a column of B
@@ -154,7 +154,7 @@ PlantModel evaporator() {
       G(0, input) = {Eigen::Vector2d(l, l * kP + kPtoL * p), Eigen::Vector3d(1, kP, 0)};
       continue;
     }
-    const Eigen::Vector2d pressure(p, p * kX + kXtoP * x);  // over both
+    const Eigen::Vector2d pressure(p, p * kX + kXtoP * x);  // numerator over `both`
     G(1, input) = {Eigen::VectorXd::Constant(1, x), Eigen::Vector2d(1, kX)};
     G(2, input) = {pressure, both};
     G(0, input) = {l * both + kPtoL * Eigen::Vector3d(0, pressure(0), pressure(1)) +

@@ -24,7 +24,7 @@ PlantModel shell_fractionator_3x3();
 ///   [yD; xB] = -------- [ 108.2  -109.6 ] [L; V],   time in minutes.
 ///              75 s + 1
 ///
-/// Its condition number is 142 at every frequency and its relative gain 35: hardly two outputs.
+/// Its condition number is 142 at every frequency and its relative gain 35: the outputs are nearly dependent.
 PlantModel distillation_column();
 
 /// P9, the model of the SISO case study (5.3.1, table 5.1), with an inverse response; time in seconds:
@@ -40,16 +40,16 @@ PlantModel siso_plant();
 /// ("ogunnaike-ray"): B. A. Ogunnaike, J. P. Lemaire, M. Morari and W. H. Ray, "Advanced multivariable
 /// control of a pilot-plant distillation column", AIChE Journal 29 (1983), 632-640; times in minutes.
 ///
-/// Mole fractions and a temperature in deg C, flows in gal/min and a pressure in psi, so that gains go from
-/// 0.0011 to 46. The channel from the steam pressure to the tray temperature and two of those of the feed
-/// temperature are of second order with a zero.
+/// CVs are mole fractions and a temperature in deg C, inputs are flows in gal/min, a pressure in psi and a
+/// temperature, so that gains range from 0.0011 to 46. The channel from the steam pressure to the tray
+/// temperature and two channels of the feed temperature are of second order with a zero.
 PlantModel ogunnaike_ray_column();
 
 /// The forced-circulation evaporator of R. B. Newell and P. L. Lee, "Applied process control: a case study"
 /// (1989), 3 CVs x 3 MVs x 3 MDs ("evaporator"); times in minutes. Its level integrates.
 ///
-/// The nonlinear equations of the book, linearised where F2 = 2 kg/min, X2 = 25 % and P2 = 50.5 kPa. Slopes
-/// of the rates by states and inputs:
+/// The model is the linearisation of the nonlinear equations of the book at F2 = 2 kg/min, X2 = 25 % and P2 =
+/// 50.5 kPa. Slopes of the rates with respect to states and inputs:
 ///
 /// | rate of | X2           | P2          | F2    | P100          | F200         | F1          | X1  | T1 |
 /// |---------|--------------|-------------|-------|---------------|--------------|-------------|-----|----|
@@ -57,8 +57,8 @@ PlantModel ogunnaike_ray_column();
 /// | P2      | -0.02090766  | -0.05579782 | 0     | 0.009587532   | -0.001828122 | 0.016437197 | 0   | a  |
 /// | L2      | 0.004181532  | 0.007512310 | -0.05 | -0.0019175065 | 0            | 0.046712561 | 0   | b  |
 ///
-/// with a = 0.0045454545 and b = -0.0009090909. What enters P2 comes out of the liquid, so that the level
-/// answers every input.
+/// with a = 0.0045454545 and b = -0.0009090909. The vapour that raises P2 leaves the liquid, so that the
+/// level answers every input.
 PlantModel evaporator();
 
 /// A binary column with the levels of its condenser and reboiler, 4 CVs x 4 MVs x 1 MD ("column-levels"): the
@@ -82,9 +82,9 @@ PlantModel distillation_column_with_levels();
 ///   tau_ij   = 8 + 3 ((2 i + 5 j) mod 8) min,
 ///   theta_ij = 1 + ((i + 3 j) mod 4) + round(2 delta) min.
 ///
-/// MD k = 1, 2 enters at the place 2.5 + 4 (k - 1) and is felt within 4 of it, by the same formulas with
-/// j = 8 + k, half the gain, and e^{-0.4 delta}. Nothing was chosen for any method: remainders stand for
-/// chance, and every number can be computed by hand.
+/// MD k = 1, 2 enters at the place 2.5 + 4 (k - 1) and acts on the CVs within 4 of it. Its channels follow
+/// the same formulas with j = 8 + k, half the gain, and e^{-0.4 delta}. No number was chosen to suit a
+/// method: remainders take the place of random numbers, and every number can be computed by hand.
 PlantModel banded_unit_20x8();
 
 }  // namespace mpm

@@ -13,8 +13,8 @@
 namespace mpm {
 namespace {
 
-constexpr long kMostSteps = 1'000'000;        // of a communication step, events included
-constexpr int kTryShorter = 1, kGiveUp = -1;  // what CVODE makes of the answer of a function
+constexpr long kMostSteps = 1'000'000;        // in one communication step, events included
+constexpr int kTryShorter = 1, kGiveUp = -1;  // return values, as CVODE understands them
 
 }  // namespace
 
@@ -28,13 +28,13 @@ class EventIntegrator::Implementation {
  private:
   static int derivative(realtype time, N_Vector state, N_Vector rate, void* self);
   static int indicators(realtype time, N_Vector state, realtype* values, void* self);
-  /// Runs `work`; keeps what it throws, which must not pass through CVODE.
+  /// Runs `work` and keeps its exception, which must not pass through CVODE.
   template <class Work>
   int guarded(const Work& work);
 
   EventSystem& equations_;
   std::size_t states_;
-  std::vector<double> x_;  ///< at least one: without states CVODE gets one that rests
+  std::vector<double> x_;  ///< at least one: if there are no states, CVODE gets one that stays at rest
   double next_event_ = 0.0;
   std::exception_ptr thrown_;
   // In the order in which they depend on each other.

@@ -59,9 +59,10 @@ class OdeIntegrator::Implementation {
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
 
-  // At time 0 from x; `fresh` when x was set, else only u has changed since the last step. The memory stays.
+  // Starts at time 0 from x. `fresh`: x was set; otherwise only u has changed since the last step. Keeps its
+  // memory.
   virtual void start(bool fresh) = 0;
-  // From `time` to `end`, both counted from the last start.
+  // Integrates from `time` to `end`, both counted from the last start.
   virtual OdeStatus integrate(double end) = 0;
 
   static int derivative(realtype, N_Vector state, N_Vector rate, void* self) {
@@ -102,8 +103,8 @@ class OdeIntegrator::RungeKutta final : public Implementation {
     require(ERKStepSetMaxNumSteps(erk_.get(), options.step_limit));
   }
 
-  // The length of the last step is a good one where only the input has changed. From a state that was set it
-  // is found anew, so that a loop does not depend on the one before it.
+  // If only the input has changed, the length of the last step is a good one. If the state was set, a new
+  // length is found, so that a loop does not depend on the one before it.
   void start(bool from_new_state) override {
     require(from_new_state ? ERKStepReInit(erk_.get(), derivative, 0.0, vector.get())
                            : ERKStepReset(erk_.get(), 0.0, vector.get()));
@@ -134,7 +135,7 @@ class OdeIntegrator::BackwardDifferentiation final : public Implementation {
     require(CVodeSetMaxNumSteps(cvode_.get(), options.step_limit));
   }
 
-  // Forgets the past of the solution, through which its polynomials would run.
+  // Forgets the past of the solution: its polynomials would run through the jump.
   void start(bool) override { require(CVodeReInit(cvode_.get(), 0.0, vector.get())); }
 
   OdeStatus integrate(double end) override {

@@ -10,13 +10,13 @@ namespace mpm {
 
 enum class OdeMethod {
   /// The explicit pair of orders 5 and 4 of Dormand and Prince (J. Comput. Appl. Math. 6 (1980) 19-26), by
-  /// ERKStep of ARKODE (Reynolds et al., ACM Trans. Math. Softw. 49 (2023) 19). A method of one step, which
-  /// begins at its full order wherever the input jumps. On stiff equations its steps are as short as their
+  /// ERKStep of ARKODE (Reynolds et al., ACM Trans. Math. Softw. 49 (2023) 19). A one-step method, which
+  /// begins at its full order after each jump of the input. On stiff equations its steps are as short as the
   /// fastest time constant.
   runge_kutta,
   /// Backward differentiation formulae of variable order and step with Newton's method on the analytic
   /// Jacobian, by CVODE (Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363-396). For equations of any
-  /// stiffness; begins at order 1 wherever the input jumps.
+  /// stiffness; begins at order 1 after each jump of the input.
   bdf,
 };
 
@@ -26,7 +26,7 @@ struct OdeOptions {
   double relative_tolerance = 1e-9;
   /// Local error of a step of a state near zero, in the state's unit.
   double absolute_tolerance = 1e-10;
-  /// Steps of one call of advance(); more of them are a failure.
+  /// Largest number of steps in one call of advance(); it fails if it needs more.
   int step_limit = 10000;
 
   /// Errors: InputError when a number is out of range.
@@ -43,8 +43,8 @@ enum class OdeStatus {
 
 /// Integrates an OdeSystem with a method of SUNDIALS.
 ///
-/// The input is constant within a call of advance(). No step of the method goes across the end of a call, and
-/// where the input changes it begins anew, so that no polynomial runs through a jump of the derivative.
+/// The input is constant within a call of advance(). No step of the method crosses the end of a call, and the
+/// method begins anew when the input changes, so that no polynomial runs through a jump of the derivative.
 ///
 /// Each integrator has a SUNDIALS context of its own: integrators of different threads are independent.
 class OdeIntegrator {
@@ -59,9 +59,9 @@ class OdeIntegrator {
   /// finite.
   void reset(const Eigen::Ref<const Eigen::VectorXd>& x);
 
-  /// Goes on by `duration` > 0 under the constant input `u` (input_count()). After another status than ok the
-  /// state is that of the last step that was accepted; reset() is needed to go on. Errors: InputError for a
-  /// wrong size, a duration that is not positive or an input that is not finite.
+  /// Goes on by `duration` > 0 under the constant input `u` (input_count()). If the status is not ok, the
+  /// state is that of the last accepted step, and reset() is needed to go on. Errors: InputError for a wrong
+  /// size, a duration that is not positive or an input that is not finite.
   OdeStatus advance(const Eigen::Ref<const Eigen::VectorXd>& u, double duration);
 
   /// x, state_count().

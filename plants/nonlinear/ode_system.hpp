@@ -15,7 +15,7 @@ namespace mpm {
 /// | y      | outputs | output_count()|
 ///
 /// f must be defined and continuous for every x near the trajectory, also where an integrator's trial steps
-/// leave what is physical. Sizes are the caller's duty.
+/// leave what is physical. The caller must pass vectors of the right sizes.
 class OdeSystem {
  public:
   virtual ~OdeSystem() = default;

@@ -23,7 +23,7 @@ double opening(double x) {
   return std::clamp(x, 0.0, 1.0);
 }
 
-// What of a flow that is taken out the tank can give, and its slope.
+// The flow; if it is taken out, the part of it that the tank can give. Below it, the slope of this part.
 double available(double flow, double level) {
   return flow < 0.0 ? flow * std::clamp(level / QuadrupleTank::kShallow, 0.0, 1.0) : flow;
 }
@@ -39,8 +39,8 @@ QuadrupleTank::QuadrupleTank(const QuadrupleTankParameters& parameters) : parame
   parameters_.validate();
 }
 
-// Below e = kShallow the parabola a h + b h^2 with a = (2 - n) e^(n-1), b = (n - 1) e^(n-2) for the exponent
-// n.
+// Below e = kShallow, q is cd times the parabola a h + b h^2 with a = (2 - n) e^(n-1), b = (n - 1) e^(n-2)
+// for the exponent n.
 double QuadrupleTank::outflow(std::size_t tank, double level) const {
   const double n = parameters_.exponent[tank];
   const double cd = parameters_.discharge[tank];

@@ -29,14 +29,14 @@ namespace mpm {
 /// Outputs are the levels h_i. The thesis has F_1 (Fex1) and F_2; F_3 and F_4 are there for disturbances of
 /// the upper tanks. D_i is water that comes and goes: it stands in the tank and runs out of its outlet, so
 /// that a disturbance of h_4 affects h_2 as well (table 3.9); the derivatives above are those of the states.
-/// Time is in seconds. What is not in the equations but in the tanks:
+/// Time is in seconds. Beyond the equations, these limits of real tanks hold:
 ///
 /// - A pump does not suck and a valve does not open beyond its ends: v_j is taken as at least 0, x_j between
 ///   0 and 1.
 /// - Nothing flows out of an empty tank. Below kShallow the laws are continued: q_i by the parabola through
-///   the origin that has the value and the slope of q_i at kShallow (a power has an infinite slope at 0), a
-///   flow that is taken out by its part h / kShallow; both are 0 below 0. No level then becomes negative but
-///   by the error of the integration or by D_i; output() reports 0 for it.
+///   the origin that has the value and the slope of q_i at kShallow (a power has an infinite slope at 0), and
+///   a flow that is taken out by its share h / kShallow; both are 0 for h < 0. A level can then become
+///   negative only by the error of the integration or by D_i; output() reports it as 0.
 class QuadrupleTank final : public OdeSystem {
  public:
   static constexpr Eigen::Index kMvs = 4;    ///< v_1, v_2, x_1, x_2
@@ -59,12 +59,12 @@ class QuadrupleTank final : public OdeSystem {
   void output(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& u,
               Eigen::Ref<Eigen::VectorXd> y) const override;
 
-  /// In closed form, from the upper tanks down. Errors: NoSteadyState when more is taken out of a tank than
-  /// flows in, or the level would be below kShallow where a flow is taken out.
+  /// Computed in closed form, from the upper tanks down. Errors: NoSteadyState if more is taken out of a tank
+  /// than flows in, or if the level of a tank from which a flow is taken out would be below kShallow.
   Eigen::VectorXd steady_state(const Eigen::Ref<const Eigen::VectorXd>& u) const override;
 
-  /// The exact linearisation at the steady state of `u`: 4 x 12, deviations of the levels by deviations of
-  /// the inputs. From D_i to h_i it is s / (s + rate): what is added to a level runs out again. Errors: as
+  /// The exact linearisation at the steady state of `u`: 4 x 12, from deviations of the inputs to deviations
+  /// of the levels. From D_i to h_i it is s / (s + rate): what is added to a level runs out again. Errors: as
   /// steady_state(); InputError when a pump or a valve rests at one of its ends, or a tank is shallower than
   /// kShallow, where the equations have a kink.
   TransferMatrix linearised(const Eigen::Ref<const Eigen::VectorXd>& u) const;
@@ -82,8 +82,8 @@ class QuadrupleTank final : public OdeSystem {
 Eigen::VectorXd quadruple_tank_operating_point();
 
 /// The linear model of P3 to P7, which is (2.31), (3.29) and (5.29) without their misprints: the
-/// linearisation at the operating point, MVs v1, v2, x1, x2. With table 2.6 it reproduces the entries that
-/// are printed right.
+/// linearisation at the operating point, MVs v1, v2, x1, x2. With table 2.6 it reproduces all entries that
+/// are printed correctly.
 PlantModel quadruple_tank_table_2_6();
 /// The same with the parameters of tables 3.1 and 5.9.
 PlantModel quadruple_tank_table_3_1();
@@ -91,7 +91,7 @@ PlantModel quadruple_tank_table_3_1();
 PlantModel quadruple_tank_flows_table_2_6();
 PlantModel quadruple_tank_flows_table_3_1();
 
-/// The nonlinear plant with the parameter set `set`, when the first `flows` external flows are MDs: the inner
+/// The nonlinear plant with the parameter set `set`. The first `flows` external flows are MDs; the inner
 /// inputs are the other flows and D1 ... D4. Errors: InputError for an unknown set.
 NonlinearModel quadruple_tank_nonlinear(const std::string& set, std::size_t flows);
 

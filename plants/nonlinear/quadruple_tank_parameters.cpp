@@ -31,7 +31,7 @@ constexpr std::array kSets{
                   .pump = {3.33, 3.35}}},
 };
 
-constexpr double kLargestExponent = 2.0;  // up to it the law of the outlet of a nearly empty tank holds
+constexpr double kLargestExponent = 2.0;  // below it, the outflow law of a nearly empty tank holds
 
 // The groups of parameters with the names of their members.
 struct Group {

@@ -49,7 +49,7 @@ inline SunContext make_context() {
   return SunContext(context);
 }
 
-/// An error handler: outcomes are told by the status, and nothing is printed.
+/// An error handler that prints nothing: the status tells the outcome.
 inline void say_nothing(int, const char*, const char*, char*, void*) {}
 
 }  // namespace mpm::sundials

@@ -2,13 +2,13 @@
 
 #include <cstddef>
 
-/// What mpmbench uses of the C interface of FMI 2.0: the types and the signatures of the
-/// functions as the standard gives them (FMI for Model Exchange and Co-Simulation, version 2.0, 2.1, 3.2
-/// and 4.2). A function of the name NAME is `fmi2NAME` in the library of an FMU.
+/// The part of the C interface of FMI 2.0 that mpmbench uses: the types and the signatures of the functions
+/// as the standard gives them (FMI for Model Exchange and Co-Simulation, version 2.0, 2.1, 3.2 and 4.2). The
+/// function NAME is `fmi2NAME` in the library of an FMU.
 namespace mpm::fmi2 {
 
 using Component = void*;             ///< an instance
-using ComponentEnvironment = void*;  ///< what the logger gets back
+using ComponentEnvironment = void*;  ///< what is passed back to the logger
 using ValueReference = unsigned int;
 using Real = double;
 using Boolean = int;
@@ -43,8 +43,8 @@ using SetReal = Status(Component, const ValueReference*, std::size_t count, cons
 using GetReal = Status(Component, const ValueReference*, std::size_t count, Real*);
 using DoStep = Status(Component, Real now, Real step, Boolean no_earlier_state);
 
-// For model exchange; those with the same name in both versions are in fmu_model_exchange.hpp.
-/// How the discrete states stand after an iteration of them.
+// For model exchange; functions that have the same name in both versions are in fmu_model_exchange.hpp.
+/// The outcome of one iteration of the discrete states.
 struct EventInfo {
   Boolean again, terminate, nominals_changed, states_changed, has_next_event;
   Real next_event;

@@ -2,13 +2,13 @@
 
 #include <cstddef>
 
-/// What mpmbench uses of the C interface of FMI 3.0: the types and the signatures of the functions as the
-/// standard gives them (Functional Mock-up Interface Specification, version 3.0, chapters 2 to 4). A function
-/// of the name NAME is `fmi3NAME` in the library of an FMU.
+/// The part of the C interface of FMI 3.0 that mpmbench uses: the types and the signatures of the functions
+/// as the standard gives them (Functional Mock-up Interface Specification, version 3.0, chapters 2 to 4). The
+/// function NAME is `fmi3NAME` in the library of an FMU.
 namespace mpm::fmi3 {
 
 using Instance = void*;
-using InstanceEnvironment = void*;  ///< what the logger gets back
+using InstanceEnvironment = void*;  ///< what is passed back to the logger
 using ValueReference = unsigned int;
 using Float64 = double;
 using Boolean = bool;
@@ -38,12 +38,12 @@ using GetFloat64 = Status(Instance, const ValueReference*, std::size_t count, Fl
 using DoStep = Status(Instance, Float64 now, Float64 step, Boolean no_earlier_state, Boolean* events_needed,
                       Boolean* terminate, Boolean* early_return, Float64* reached);
 
-// For model exchange; those with the same name in both versions are in fmu_model_exchange.hpp.
+// For model exchange; functions that have the same name in both versions are in fmu_model_exchange.hpp.
 using InstantiateModelExchange = Instance(String name, String token, String resources, Boolean visible,
                                           Boolean logging, InstanceEnvironment, LogMessage*);
 using UpdateDiscreteStates = Status(Instance, Boolean* again, Boolean* terminate, Boolean* nominals_changed,
                                     Boolean* states_changed, Boolean* has_next_event, Float64* next_event);
-/// Of GetNumberOfContinuousStates and GetNumberOfEventIndicators.
+/// The signature of GetNumberOfContinuousStates and GetNumberOfEventIndicators.
 using GetNumber = Status(Instance, std::size_t*);
 
 }  // namespace mpm::fmi3

@@ -71,7 +71,7 @@ class Fmi3Calls : public FmuCalls {
   const double stop_;
 };
 
-/// Without the event mode, in which an FMU handles its events within its steps, and without early returns.
+/// Uses neither the event mode, so that the FMU handles its events within its steps, nor early returns.
 class Fmi3CoSimulation final : public Fmi3Calls {
  public:
   Fmi3CoSimulation(const FmuPackage& package, double stop)

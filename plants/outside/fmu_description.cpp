@@ -37,7 +37,8 @@ const char* real_of(FmiVersion version) {
   return version == FmiVersion::two ? "Real" : "Float64";
 }
 
-/// The element that says which type a variable has: by FMI 2.0 among its children, by FMI 3.0 itself.
+/// Returns the type of a variable: by FMI 2.0 the name of a child element, by FMI 3.0 that of the element
+/// itself.
 std::string type_of(const pugi::xml_node& variable, FmiVersion version) {
   if (version == FmiVersion::three)
     return fmt::format("{}{}", variable.name(), variable.child("Dimension") ? " array" : "");
@@ -47,7 +48,7 @@ std::string type_of(const pugi::xml_node& variable, FmiVersion version) {
   return "no type";
 }
 
-/// All digits, of a number that fits.
+/// Reads a value reference, which must be a number that fits, of digits only.
 fmi2::ValueReference reference_of(const pugi::xml_node& node, const std::string& file) {
   const std::string text = node.attribute("valueReference").value();
   fmi2::ValueReference reference = 0;
@@ -62,7 +63,7 @@ fmi2::ValueReference reference_of(const pugi::xml_node& node, const std::string&
   return reference;
 }
 
-/// The name of the library: a name of C, so that it is no path either.
+/// Returns the name of the library. It must be a name of C, so that it cannot be a path.
 std::string identifier_of(const pugi::xml_node& kind, const std::string& file) {
   constexpr std::size_t kLongest = 200;
   std::string identifier = attribute_of(kind, "modelIdentifier", file);
@@ -103,7 +104,7 @@ std::string_view causality_of(FmuRole role) {
   return role == FmuRole::input ? "input" : role == FmuRole::output ? "output" : "parameter";
 }
 
-/// Some names that the study could have meant; of outputs those that are declared as such.
+/// Lists some names that the study could have meant; for outputs, only those that are declared as outputs.
 std::string names_of(const FmuDescription& description, FmuRole role) {
   std::vector<std::string> names;
   for (const auto& [name, variable] : description.variables)

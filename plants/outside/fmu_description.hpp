@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// Of the interface of an FMU.
+/// Version of the interface of an FMU.
 enum class FmiVersion { two, three };
 
 /// Who integrates: the FMU, or mpmbench.
@@ -34,19 +34,19 @@ enum class FmuRole {
 struct FmuDescription {
   std::string file;  ///< of the FMU, for messages
   FmiVersion version = FmiVersion::two;
-  FmuKind kind = FmuKind::co_simulation;  ///< also where it can be both
-  std::string guid;        ///< which the library compares with its own; by FMI 3.0 the instantiation token
+  FmuKind kind = FmuKind::co_simulation;  ///< co-simulation if the FMU can be both
+  std::string guid;        ///< the library compares it with its own; by FMI 3.0 the instantiation token
   std::string identifier;  ///< name of the library
-  std::size_t states = 0, indicators = 0;  ///< of model exchange; by FMI 3.0 the library says how many
+  std::size_t states = 0, indicators = 0;  ///< for model exchange; by FMI 3.0 the library reports them
   std::map<std::string, FmuVariable, std::less<>> variables;
 
-  /// The variable of this name. Errors: InputError at `place`, which lists names of that role, for one that
-  /// is not there, has another causality or is no real number.
+  /// Returns the variable of this name. Errors: InputError at `place`, which lists names of that role, if the
+  /// variable is not there, has another causality or is no real number.
   const FmuVariable& variable(std::string_view name, FmuRole role, const std::string& place) const;
 };
 
-/// Reads the text of modelDescription.xml. Errors: InputError that begins with `file` for what is no XML, has
-/// another FMI version, is for neither co-simulation nor model exchange, or lacks an attribute.
+/// Reads the text of modelDescription.xml. Errors: InputError that begins with `file` if the text is no XML,
+/// has another FMI version, is for neither co-simulation nor model exchange, or lacks an attribute.
 FmuDescription parse_fmu_description(const std::string& xml, const std::string& file);
 
 }  // namespace mpm

@@ -34,7 +34,7 @@ std::string_view status_words(int status) {
 }
 
 /// The last messages of the one FMU of this process. They are no member of an instance, because some FMUs
-/// give their logger no environment.
+/// pass no environment to their logger.
 struct FmuMessages {
   std::string any, of_trouble;
 };
@@ -44,7 +44,7 @@ FmuMessages& messages() {
   return kept;
 }
 
-/// The library with its own symbols first. The sanitizers cannot have that.
+/// Loads the library so that its own symbols come first, which the sanitizers do not allow.
 void* load_library(const std::string& path) {
 #ifdef MPMBENCH_IS_SANITIZED
   constexpr int kOwnFirst = 0;

@@ -18,17 +18,17 @@
 namespace mpm {
 namespace {
 
-/// An FMU that was unpacked, with what the study uses of it, and the process that makes those of its loops.
+/// An unpacked FMU, what the study uses of it, and the server that makes the processes of its loops.
 struct LoadedFmu {
   explicit LoadedFmu(const std::filesystem::path& file) : package(file) {}
 
   FmuPackage package;
   FmuReferences references;
-  std::vector<bool> tunable;  ///< of the parameters
+  std::vector<bool> tunable;  ///< for each parameter
   std::optional<ForkServer> server;
 };
 
-/// What is asked of the process that has the instance: the first number of a request.
+/// The kind of a request to the process that has the instance: the first number of the request.
 enum class FmuRequest { start, change, step };
 
 std::vector<double> request_of(FmuRequest kind, const Eigen::VectorXd& first,
@@ -39,7 +39,7 @@ std::vector<double> request_of(FmuRequest kind, const Eigen::VectorXd& first,
   return request;
 }
 
-/// The other end: the instance, in the process that has it.
+/// The other end: answers requests in the process that has the instance.
 class FmuServer {
  public:
   FmuServer(const LoadedFmu& fmu, FmuSteps steps) : fmu_(fmu), steps_(steps) {}

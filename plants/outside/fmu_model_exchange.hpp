@@ -12,9 +12,9 @@
 
 namespace mpm {
 
-/// What an FMU for model exchange does in either version of the interface. `Calls` has the instance_, the
-/// library_, the time now_, require(), the types Status and Boolean, and the name kGetDerivatives. Inputs and
-/// parameters are set in the event mode, since they jump.
+/// An FMU for model exchange, in either version of the interface. `Calls` provides instance_, library_, the
+/// time now_, require(), the types Status and Boolean, and the name kGetDerivatives. Inputs and parameters
+/// are set in the event mode, since they jump.
 template <class Calls>
 class ModelExchange : public Calls, protected EventSystem {
  public:
@@ -41,16 +41,17 @@ class ModelExchange : public Calls, protected EventSystem {
   }
 
  protected:
-  /// Of states and of event indicators.
+  /// Returns the numbers of states and of event indicators.
   virtual std::pair<std::size_t, std::size_t> sizes() = 0;
-  /// New discrete states until nothing changes any more. Returns the time of the next event; infinite: none.
+  /// Updates the discrete states until nothing changes any more. Returns the time of the next event;
+  /// infinite: none.
   virtual double update_discrete_states() = 0;
 
  private:
   using Status = typename Calls::Status;
   using Boolean = typename Calls::Boolean;
 
-  /// The function of this name with the instance and these arguments.
+  /// Calls the function of this name with the instance and these arguments.
   template <class... Arguments>
   void call(const char* name, Arguments... arguments) {
     this->require(
@@ -82,7 +83,7 @@ class ModelExchange : public Calls, protected EventSystem {
   }
 
   std::size_t states_ = 0, indicators_ = 0;
-  std::optional<EventIntegrator> integrator_;  ///< once it is known how many there are
+  std::optional<EventIntegrator> integrator_;  ///< made once the sizes are known
   bool is_continuous_ = false;
 };
 

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr const char *kBinaries2 = "binaries/linux64/", *kBinaries3 = "binaries/x86_64-linux/";
 constexpr const char* kResources = "resources/";
 constexpr std::uint64_t kMostBytes = std::uint64_t{4} << 30U;  // unpacked: a bound on what a file can cost
-constexpr std::uint64_t kMostOfDescription = std::uint64_t{256} << 20U;  // which is read into memory
+constexpr std::uint64_t kMostOfDescription = std::uint64_t{256} << 20U;  // read into memory as a whole
 constexpr std::size_t kEntryPiece = std::size_t{1} << 16;
 constexpr std::size_t kShownOfEntry = 100;  // bytes of a name, in a message
 
@@ -47,7 +47,7 @@ Zip open_zip(const fs::path& file) {
   throw InputError("FMU", fmt::format("'{}' ({})", file.string(), text), "an FMU: a ZIP file");
 }
 
-/// Hands the content of one entry on in pieces, as much as the file says that it has.
+/// Passes the content of one entry on in pieces, as many bytes as the file declares.
 void read_entry(zip_t* zip, const zip_stat_t& entry, const fs::path& file,
                 const std::function<void(std::string_view)>& take) {
   struct CloseEntry {

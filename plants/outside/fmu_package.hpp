@@ -11,13 +11,13 @@ namespace mpm {
 /// and its resources.
 class FmuPackage {
  public:
-  /// Errors: InputError for a file that cannot be read, is no ZIP or holds a path out of it, as
-  /// parse_fmu_description(), and without a library for 64-bit Linux.
+  /// Errors: InputError if the file cannot be read, is no ZIP, holds a path that leads out of it or has no
+  /// library for 64-bit Linux; also as parse_fmu_description().
   explicit FmuPackage(const std::filesystem::path& file);
 
   const FmuDescription& description() const { return description_; }
-  /// binaries/linux64/IDENTIFIER.so, by FMI 3.0 binaries/x86_64-linux/IDENTIFIER.so, or the only library
-  /// there, whatever its name is.
+  /// binaries/linux64/IDENTIFIER.so, by FMI 3.0 binaries/x86_64-linux/IDENTIFIER.so. If there is no such
+  /// file, the only library in this folder, whatever its name is.
   std::filesystem::path library() const;
   /// The URI of the folder resources, by FMI 3.0 its path, as the library takes it.
   std::string resources() const;

@@ -92,7 +92,7 @@ class ProgramModel final : public ForeignModel {
     return fmt::format("'{}' {} {} {}", fmt::join(settings_.command, "' '"), options().settle,
                        options().settle_tolerance, options().time_limit);
   }
-  void load() const override {}  // a program that is not there shows when it is started
+  void load() const override {}  // a missing program shows when it is started
   std::vector<std::string> command() const override { return settings_.command; }
   Eigen::Index output_count() const override { return settings_.outputs; }
   bool is_tunable(std::size_t) const override { return false; }

@@ -14,16 +14,17 @@ namespace mpm {
 struct ProgramSettings {
   std::vector<std::string> command;                       ///< the program and its arguments
   std::vector<std::string> parameters;                    ///< names
-  Eigen::Index mvs = 0, mds = 0, inner = 0, outputs = 0;  ///< how many
+  Eigen::Index mvs = 0, mds = 0, inner = 0, outputs = 0;  ///< numbers of them
 };
 
-/// A plant that answers lines of JSON by lines of JSON (docs/own_plant.md):
+/// A plant that answers lines of JSON with lines of JSON (docs/own_plant.md):
 ///
 ///   {"call": "reset", "parameters": {"NAME": value, ...}, "sample_time": Ts}   ->   {}
 ///   {"call": "step", "u": [...], "d": [...], "inner": [...]}                   ->   {"y": [...]}
 ///
-/// Each simulation is a program of its own; a reset begins anew. Parameters are fixed: they come with the
-/// reset. Errors of a simulation, besides those of ChildProcess: an answer that is not this, {"error": TEXT}.
+/// Each simulation runs its own program; a reset starts from the beginning. Parameters are fixed: they come
+/// with the reset. Errors of a simulation, besides those of ChildProcess: an answer of another form, and
+/// {"error": TEXT}.
 std::shared_ptr<const ForeignModel> program_model(ProgramSettings settings, const ForeignOptions& options);
 
 }  // namespace mpm
