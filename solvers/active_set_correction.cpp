@@ -8,8 +8,8 @@
 namespace mpm {
 namespace {
 
-// Of a diagonal of inv(D) + W'W, after elimination: less has lost too many digits for a step of Newton's
-// method that should end at the minimiser.
+// The share of a diagonal of inv(D) + W'W that must be left after elimination. If less is left, too many
+// digits are lost for a step of Newton's method that should end at the minimiser.
 constexpr double kSmallestLeft = 1e-6;
 
 }  // namespace
@@ -44,7 +44,7 @@ bool ActiveSetCorrection::assign(const std::vector<SpringChange>& changes) {
   return false;
 }
 
-// Of the changes there are those that are listed; the last one takes the place of one that goes.
+// Keeps those of the present changes that are listed; the last change takes the place of each that goes.
 void ActiveSetCorrection::keep(const std::vector<SpringChange>& changes) {
   for (std::size_t k = changes_.size(); k-- > 0;) {
     if (std::find(changes.begin(), changes.end(), changes_[k]) != changes.end())
@@ -70,14 +70,14 @@ void ActiveSetCorrection::add(const SpringChange& change) {
   changes_.push_back(change);
 }
 
-// inv(D) + W'W is quasidefinite: with a positive definite M_FF + B D B' every pivot has the sign of its
+// inv(D) + W'W is quasidefinite: if M_FF + B D B' is positive definite, every pivot has the sign of its
 // weight, in any order.
 bool ActiveSetCorrection::factor_small() {
   const auto count = static_cast<Eigen::Index>(changes_.size());
   for (Eigen::Index k = 0; k < count; ++k) {
     const double inverse = 1.0 / changes_[static_cast<std::size_t>(k)].weight;
     double pivot = inverse + gram_(k, k);
-    double left[kMost];  // of the row k of inv(D) + W'W: L D
+    double left[kMost];  // row k of L D, where inv(D) + W'W = L D L'
     for (Eigen::Index j = 0; j < k; ++j) {
       left[j] = gram_(k, j);
       for (Eigen::Index i = 0; i < j; ++i)

@@ -11,7 +11,7 @@
 
 namespace mpm {
 
-/// A spring that a matrix has and should not have, or lacks: weight b b' is to be added, with b = (a_row,
+/// A spring that has to be added to a matrix, or taken out of it: weight b b' is added, with b = (a_row,
 /// slack_sign at the slack of the row) and weight = k or -k.
 struct SpringChange {
   int row;
@@ -28,16 +28,16 @@ struct SpringChange {
 /// The columns of W are kept as long as the factor is the same. All memory is taken at construction.
 class ActiveSetCorrection {
  public:
-  /// Most changes at a time: with more of them, to factor M_FF + B D B' is less work.
+  /// Most changes at a time: with more of them, factoring M_FF + B D B' is less work.
   static constexpr std::size_t kMost = 8;
 
   ActiveSetCorrection(const ActiveSetProblem& problem, ActiveSetFactor& factor);
 
-  /// No changes; to be called when the factor has changed.
+  /// Drops all changes; to be called when the factor has changed.
   void clear();
 
-  /// Replaces the changes. Returns false, and keeps none, when they are too many or leave too little of a
-  /// diagonal for an accurate solution.
+  /// Replaces the changes. Returns false, and keeps none, if there are too many or if they leave too little
+  /// of a diagonal for an accurate solution.
   bool assign(const std::vector<SpringChange>& changes);
 
   /// Solves (M_FF + B D B') x_F = b_F in place: the entries F of `vector` are replaced, the others are kept.

@@ -5,7 +5,7 @@
 namespace mpm {
 namespace {
 
-// With which the matrix takes in a spring that it lacks, or gives back one that is no longer stretched.
+// The weight with which the matrix takes in a spring that it lacks, or gives back one that is released.
 double weight_of(const LimitSprings& springs, int row) {
   return springs.stretched(row) ? springs.stiffness(row) : -springs.stiffness(row);
 }

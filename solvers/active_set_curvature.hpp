@@ -16,21 +16,21 @@ namespace mpm {
 ///     M = Q + diag(sigma) + sum over stretched springs of k_i b_i b_i',    b_i = (a_i, e at the slack of i),
 ///
 /// kept from one iteration and one sample to the next: only springs that were stretched or released since
-/// are added or taken off. It is built anew when that is less work.
+/// then are added or taken out. M is built anew if that is less work.
 class ActiveSetCurvature {
  public:
   ActiveSetCurvature(const ActiveSetProblem& problem, std::size_t family_count);
 
   /// Forgets the springs: M = Q + diag(sigma).
   void clear();
-  /// Updates M to the present forces of the springs; false when nothing changed.
+  /// Updates M to the present forces of the springs. Returns false if nothing has changed.
   bool synchronise(const std::vector<LimitSprings>& families);
-  /// The changes that this would make, if they are at most ActiveSetCorrection::kMost springs; otherwise
-  /// false.
+  /// Finds the changes that synchronise() would make. Returns false if they are more than
+  /// ActiveSetCorrection::kMost springs.
   bool find_few(const std::vector<LimitSprings>& families, std::vector<SpringChange>& changes) const;
 
-  /// M in its lower triangle, beside it columns of the unit matrix up to the stride. What stands above is
-  /// arbitrary.
+  /// M in its lower triangle, followed by columns of the unit matrix up to the stride. The numbers above the
+  /// diagonal are arbitrary.
   const LaneMatrix& matrix() const { return matrix_; }
 
  private:
@@ -39,8 +39,8 @@ class ActiveSetCurvature {
 
   const ActiveSetProblem& problem_;
   LaneMatrix matrix_;
-  std::vector<RowBits> included_;          ///< of a family
-  std::vector<std::vector<int>> changes_;  ///< of a family: springs that M does not have as they are
+  std::vector<RowBits> included_;          ///< of each family: springs that M has
+  std::vector<std::vector<int>> changes_;  ///< of each family: springs that M has wrongly or lacks
   std::vector<double> weights_;
   LaneVector scratch_;
   std::size_t stretched_ = 0;

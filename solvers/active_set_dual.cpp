@@ -9,10 +9,10 @@
 namespace mpm {
 namespace {
 
-// A limit whose normal leaves less than this of its squared length beside the working set depends on it.
+// A limit depends on the working set if its normal leaves less than this of its squared length beside it.
 constexpr double kDependent = 1e-12;
 constexpr int kRefinements = 6;
-constexpr double kRefined = 0.1;  // of the tolerance
+constexpr double kRefined = 0.1;  // share of the tolerance
 
 Eigen::Index capacity(const ActiveSetProblem& problem) {
   return problem.variable_count() + (problem.softness.array() > 0.0).count();
@@ -81,8 +81,9 @@ DualOutcome DualActiveSet::iterate(const QpData& data, double tolerance, int& it
   }
 }
 
-// The last working set where it still makes sense: limits that exist and have multipliers of the right sign.
-// The multipliers of a working set are inv(S) times how far its limits are exceeded where there are none.
+// Starts with the last working set, as far as it still makes sense: limits that exist and have multipliers of
+// the right sign. The multipliers are inv(S) times the amounts by which the limits of the set are exceeded at
+// the point without limits.
 void DualActiveSet::warm_start(const QpData& data) {
   for (std::size_t k = working_.size(); k-- > 0;)
     if (!std::isfinite(geometry_.limit(data, working_[k])))
@@ -106,7 +107,8 @@ double DualActiveSet::excess(const QpData& data, const LimitSide& side) const {
   return side.side * (geometry_.value(side, z_) - geometry_.limit(data, side));
 }
 
-// After `meet` has found that `left` of its diagonal in S is independent of the working set.
+// To be called after `meet` has found that `left` of the limit's diagonal in S is independent of the working
+// set.
 bool DualActiveSet::enter(const LimitSide& side, double multiplier, double left) {
   if (!factor_.append(lower_, left))
     return false;
@@ -129,9 +131,9 @@ void DualActiveSet::leave(std::size_t k) {
   }
 }
 
-// One step of iterative refinement of the multipliers with which every limit of the working set is met.
-// Returns the largest distance to a limit, times its multiplier when above 1, before the step. The change of
-// z is added to it: z as computed from the multipliers has the rounding error of their size.
+// One step of iterative refinement of the multipliers, so that z meets every limit of the working set.
+// Returns the largest distance to a limit before the step, times the multiplier if that is above 1. The
+// change of z is added to z: computed from the multipliers, z would have the rounding error of their size.
 double DualActiveSet::equilibrate(const QpData& data) {
   double error = 0.0;
   const auto count = static_cast<Eigen::Index>(working_.size());
@@ -156,7 +158,7 @@ void DualActiveSet::refine(const QpData& data, double tolerance) {
       return;
 }
 
-// z = -inv(Q) c: without any limit.
+// z = -inv(Q) c: the minimiser without limits.
 void DualActiveSet::find_free_point() {
   z_.vector() = -linear_.vector();
   geometry_.apply_inverse(z_);
@@ -169,7 +171,8 @@ void DualActiveSet::find_point() {
   geometry_.apply_inverse(z_);
 }
 
-// What widens the soft limits of each row; a row without a slack has none.
+// The slack that widens the soft limits of each row; infinite if there is none, as the row has no soft
+// limits.
 void DualActiveSet::gather_slacks() {
   for (const auto& [first, count, slack] : slack_runs_) {
     const int column = problem_.slack_column(first);
@@ -178,8 +181,8 @@ void DualActiveSet::gather_slacks() {
   }
 }
 
-// The limit that is exceeded most, by more than the tolerance, of those outside of the working set; a hard
-// limit of a row, which hardly ever is, when no other one is.
+// Finds the limit outside the working set that is exceeded most, by more than the tolerance. A hard limit of
+// a row, which is hardly ever exceeded, counts only if no other limit does.
 bool DualActiveSet::find_violated(const QpData& data, double tolerance, LimitSide& worst) {
   double largest = tolerance;
   const auto look = [&](LimitKind kind, Eigen::Index i, double below, double above) {
@@ -189,8 +192,8 @@ bool DualActiveSet::find_violated(const QpData& data, double tolerance, LimitSid
     largest = excess;
     worst = {kind, i, above >= below ? 1.0 : -1.0};
   };
-  // The kernel says which row is beyond its limits most; when it is one of the working set, all are looked
-  // at.
+  // The kernel finds the row that is furthest beyond its limits. If its limit is in the working set, all rows
+  // are checked.
   const auto look_at_rows = [&](const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                                 const double* slack, const auto& look_at) {
     double most = largest;
@@ -280,8 +283,8 @@ DualOutcome DualActiveSet::meet(const QpData& data, const LimitSide& side, int& 
   return DualOutcome::failed;
 }
 
-// The normal of `side` is the combination `direction_` of those of the working set. The combination is
-// refined: as a proof it has to be exact where x has no limits.
+// The normal of `side` is the combination `direction_` of the normals of the working set. The combination is
+// refined: to be a proof, it has to be exact where x has no limits.
 void DualActiveSet::make_ray(const LimitSide& side) {
   const auto count = static_cast<Eigen::Index>(working_.size());
   for (int k = 0; k < kRefinements; ++k) {

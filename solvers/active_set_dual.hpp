@@ -17,18 +17,18 @@ enum class DualOutcome { solved, infeasible, failed };
 /// The dual active-set method of Goldfarb & Idnani (Math. Program. 27 (1983) 1-33) in the form with the Schur
 /// complement, warm-started with the last working set.
 ///
-/// It meets one limit after another, and leaves one when its multiplier reaches zero. Nearly parallel limits,
-/// which the method of multipliers separates slowly, cost it nothing; its work grows with the square of the
-/// number of active limits. The Schur complement depends on the working set only, so that its factor is kept
-/// from one program to the next. Where Q is only semidefinite, it has the proximal term 1/2 sigma_j z_j^2
-/// beside it, whose centre the caller moves. `solve` allocates nothing.
+/// It meets one limit after another, and drops a limit when its multiplier reaches zero. Nearly parallel
+/// limits, which the method of multipliers separates slowly, cost it nothing; its work grows with the square
+/// of the number of active limits. The Schur complement depends on the working set only, so that its factor
+/// is kept from one program to the next. If Q is only semidefinite, the proximal term 1/2 sigma_j z_j^2 is
+/// added, whose centre the caller moves. `solve` allocates nothing.
 class DualActiveSet {
  public:
   explicit DualActiveSet(const ActiveSetProblem& problem);
 
   void reset();
 
-  /// `linear` is c of the problem in z, less sigma times the centre. `infeasible` only says that the method
+  /// `linear` is c of the problem in z, less sigma times the centre. `infeasible` means only that the method
   /// found a ray, see `ray`.
   DualOutcome solve(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& linear, double tolerance,
                     int& iterations);
@@ -63,10 +63,10 @@ class DualActiveSet {
   LimitGeometry geometry_;
   SchurFactor factor_;
   std::vector<LimitSide> working_;
-  Eigen::Index rigid_ = 0;      ///< limits of the working set without softness: no more than variables
+  Eigen::Index rigid_ = 0;      ///< number of working limits without softness; at most the variables
   Eigen::VectorXd multiplier_;  ///< >= 0 in the direction of `side`, in the order of `working_`
-  Eigen::VectorXd products_;    ///< of a limit with those of the working set
-  Eigen::VectorXd lower_;       ///< inv(L) of them, S = L L'
+  Eigen::VectorXd products_;    ///< products of a limit with those of the working set
+  Eigen::VectorXd lower_;       ///< inv(L) products_, where S = L L'
   Eigen::VectorXd direction_, ray_;
   LaneVector linear_, z_, step_;
   LaneVector row_value_, row_slack_;

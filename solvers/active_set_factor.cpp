@@ -7,7 +7,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kSmallestPivot = 4.0e-15;  // relative to the diagonal before elimination: below is noise
+constexpr double kSmallestPivot = 4.0e-15;  // relative to the diagonal before elimination; below it is noise
 
 }  // namespace
 
@@ -29,7 +29,7 @@ bool ActiveSetFactor::compute(const LaneMatrix& matrix, const std::vector<int>& 
                                inverse_.data());
 }
 
-// M_FF, and the unit matrix in the rest of the last eight rows.
+// Gathers M_FF, with the unit matrix in the rest of the last eight rows.
 void ActiveSetFactor::gather(const LaneMatrix& matrix) {
   const auto count = static_cast<Eigen::Index>(free_.size());
   const int* index = free_.data();

@@ -17,13 +17,13 @@ class ActiveSetFactor {
   explicit ActiveSetFactor(Eigen::Index size);
 
   /// Factors M_FF, reading the lower triangle of `matrix` only; `free` is F in increasing order. Returns
-  /// false when M_FF is not numerically positive definite: then there is no factor. Beside its own columns
+  /// false if M_FF is not numerically positive definite; then there is no factor. After its own columns,
   /// `matrix` has those of the unit matrix up to its stride.
   bool compute(const LaneMatrix& matrix, const std::vector<int>& free);
 
-  /// |F| as a multiple of eight: the length of what follows.
+  /// |F| rounded up to a multiple of eight: the length of `packed` below.
   Eigen::Index packed_size() const { return padded(static_cast<Eigen::Index>(free_.size())); }
-  /// The entries F of `vector`, followed by zeros, and back again.
+  /// Copies the entries F of `vector`, followed by zeros, and copies them back.
   void pack(const LaneVector& vector, double* packed) const;
   void unpack(const double* packed, LaneVector& vector) const;
   /// inv(L) b and inv(L') b in place.
@@ -35,7 +35,7 @@ class ActiveSetFactor {
 
   Eigen::Index size_;
   LaneMatrix gathered_, lower_;
-  LaneVector inverse_;  ///< of the blocks on the diagonal of L
+  LaneVector inverse_;  ///< inverses of the blocks on the diagonal of L
   std::vector<int> free_;
 };
 

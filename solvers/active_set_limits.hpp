@@ -57,10 +57,10 @@ class LimitGeometry {
 
   const ActiveSetProblem& problem_;
   LaneMatrix lower_;             ///< L below its diagonal, H + diag(sigma) = L L'
-  LaneVector inverse_, packed_;  ///< of the blocks on the diagonal of L; scratch
+  LaneVector inverse_, packed_;  ///< inverses of the blocks on the diagonal of L; scratch
   LaneMatrix scaled_;            ///< columns L^-1 a_i, then L^-1 e_j
   Eigen::VectorXd slack_;        ///< 2w + sigma of the kept slacks
-  LaneVector force_;             ///< of each row in `subtract_normals`, else zero
+  LaneVector force_;             ///< force on each row in `subtract_normals`, otherwise zero
   std::vector<int> pushing_;     ///< the rows with a force
 };
 

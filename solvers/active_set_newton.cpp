@@ -9,12 +9,12 @@
 namespace mpm {
 namespace {
 
-// Steps on which many limits may be met at once; then the search stops at the first one, which is slower and
-// finite.
+// In so many steps, many limits may be met at once. After them, the search stops at the first limit, which is
+// slower and finite.
 constexpr int kProjectedSteps = 60;
-constexpr double kDownhill = 0.3;  // slope of such a step relative to that of the Newton step
+constexpr double kDownhill = 0.3;  // least slope of such a step relative to that of the Newton step
 constexpr int kLineSearchSteps = 60;
-constexpr double kSlopeLeft = 0.1;  // at the end of the line search, relative to its start
+constexpr double kSlopeLeft = 0.1;  // slope at the end of the line search, relative to its start
 
 }  // namespace
 
@@ -58,9 +58,10 @@ void ActiveSetNewton::start(std::vector<LimitSprings>& families) {
       springs.place(problem_, row_value, z);
 }
 
-// The minimiser for the present limits if the stretched springs and the held variables were those of the last
-// call: one solve with the factor that is there. Noise moves all rows of a controlled variable together, and
-// the last sets are a far better guess than the sets that the last z has with the present limits.
+// Moves z to the minimiser for the present limits, as if the stretched springs and the held variables were
+// those of the last call: one solve with the factor that is there. Noise moves all rows of a controlled
+// variable together, so that the sets of the last call are a far better guess than the sets that the last z
+// has with the present limits.
 void ActiveSetNewton::predict(std::vector<LimitSprings>& families) {
   follow_limits();
   for (LimitSprings& springs : families) {
@@ -166,7 +167,8 @@ void ActiveSetNewton::add_row_forces(const LimitSprings& springs) {
       gradient(column) += springs.slack_sign * springs.force(i);
 }
 
-// The variables that may move; returns the largest gradient among them, infinite when one is not a number.
+// Finds the variables that may move. Returns the largest gradient among them, infinite if one is not a
+// number.
 double ActiveSetNewton::find_free() {
   next_free_.clear();
   double largest = 0.0;
@@ -180,7 +182,7 @@ double ActiveSetNewton::find_free() {
   return largest;
 }
 
-// `anew`: the last step should have ended at the minimiser and has not; it needs more digits.
+// `anew`: the last step should have ended at the minimiser but did not, so that more digits are needed.
 bool ActiveSetNewton::find_direction(const std::vector<LimitSprings>& families, bool anew) {
   if (anew || !factored_ || next_free_ != free_ || !correct_factor(families)) {
     free_.assign(next_free_.begin(), next_free_.end());
@@ -202,7 +204,7 @@ bool ActiveSetNewton::make_factor(const std::vector<LimitSprings>& families) {
   return factored_;
 }
 
-// The Newton step of the free variables; against the gradient where there is no factor.
+// The Newton step of the free variables; without a factor, a step against the gradient.
 void ActiveSetNewton::solve_for_direction() {
   direction_.vector().setZero();
   for (const int j : free_)
@@ -211,7 +213,8 @@ void ActiveSetNewton::solve_for_direction() {
     correction_.solve_in_place(direction_);
 }
 
-// The step to the nearest point of the box to the Newton point; false when that is hardly downhill.
+// The step to the point of the box that is nearest to the Newton point. Returns false if it is hardly
+// downhill.
 bool ActiveSetNewton::aim_projected() {
   step_ = direction_;
   newton_step_ = true;
@@ -272,7 +275,7 @@ void ActiveSetNewton::aim_springs(std::vector<LimitSprings>& families) {
 }
 
 // Second derivative of theta along the step, without the springs that change. Newton's step p solves M p =
-// -g, so that p'Mp is the slope with the other sign.
+// -g, so that p'Mp is minus the slope.
 double ActiveSetNewton::steady_curvature(std::vector<LimitSprings>& families, double slope) {
   double result = newton_step_ ? -slope : whole_curvature(families);
   for (const LimitSprings& springs : families)
@@ -281,7 +284,7 @@ double ActiveSetNewton::steady_curvature(std::vector<LimitSprings>& families, do
   return std::max(0.0, result);
 }
 
-// The same with all springs that are stretched where the step begins.
+// The same with all springs that are stretched at the start of the step, those that change included.
 double ActiveSetNewton::whole_curvature(std::vector<LimitSprings>& families) {
   const Eigen::Index n = problem_.structure->variable_count();
   const Eigen::Index kept = z.size() - n;
@@ -296,8 +299,8 @@ double ActiveSetNewton::whole_curvature(std::vector<LimitSprings>& families) {
   return result;
 }
 
-// The root of the derivative of theta along the step, a rising piecewise linear function of t: Newton's
-// method within a bracket. The whole step when theta falls all along it.
+// Finds the root of the derivative of theta along the step, a rising piecewise linear function of t, by
+// Newton's method within a bracket. Returns the whole step if theta falls all along it.
 double ActiveSetNewton::line_search(std::vector<LimitSprings>& families, double slope) {
   const double steady = steady_curvature(families, slope);
   double low = 0.0;

@@ -26,17 +26,17 @@ class ActiveSetNewton {
  public:
   ActiveSetNewton(const ActiveSetProblem& problem, std::size_t family_count);
 
-  /// z = 0, as after construction.
+  /// Sets z = 0, as after construction.
   void reset();
 
   /// To be called after the stiffness of springs was changed.
   void forget_curvature();
 
-  /// Finds a starting point in the box, from the sets of the last call, and the springs' values there.
+  /// Finds a starting point in the box from the active sets of the last call, and the springs' values there.
   void start(std::vector<LimitSprings>& families);
 
-  /// Until the projected gradient is at most `tolerance`; `iterations` is counted up, to `limit` at most. The
-  /// springs' forces are those at z.
+  /// Minimises until the projected gradient is at most `tolerance`. Counts `iterations` up, to `limit` at
+  /// most. The springs' forces are those at z afterwards.
   NewtonOutcome minimise(std::vector<LimitSprings>& families, double tolerance, int limit, int& iterations);
 
   /// The largest |sigma_j (z_j - centre_j)|: what the proximal term still adds to the gradient.
@@ -47,7 +47,7 @@ class ActiveSetNewton {
   LaneVector gradient;              ///< of theta at z, after `minimise`
   LaneVector row_value;             ///< A x
 
-  /// True when variable j rests on a limit, which its gradient pushes it against.
+  /// True if variable j rests on a limit against which its gradient pushes it.
   bool held(Eigen::Index j) const;
 
  private:
@@ -74,7 +74,7 @@ class ActiveSetNewton {
   ActiveSetCorrection correction_;
   std::vector<SpringChange> changes_;  ///< what `correction_` was asked for
   bool factored_ = false;
-  bool newton_step_ = false;  ///< `step_` is that of Newton's method, nothing of it was cut off
+  bool newton_step_ = false;  ///< `step_` is the whole step of Newton's method: nothing of it was cut off
   std::vector<int> free_, next_free_;
   LaneVector direction_, step_, target_, row_step_, scratch_;
 };

@@ -11,10 +11,12 @@ namespace {
 
 // H counts as positive definite when its smallest eigenvalue is above this share of its largest diagonal.
 constexpr double kDefinite = 1e-9;
-// Proximal weight relative to the curvature scale. Small: the proximal iteration ends after a few rounds.
+// Proximal weight relative to the curvature scale. It is small, so that the proximal iteration takes few
+// rounds.
 constexpr double kProximal = 1e-6;
-// Stiffness |a_i|^2 rho_i of a limit relative to the curvature scale. Large: few rounds of multipliers; not
-// larger: rho times the rounding error of a row value is the error of the forces.
+// Stiffness |a_i|^2 rho_i of a limit relative to the curvature scale. It is large, so that few rounds of
+// multipliers are needed, but no larger: rho times the rounding error of a row value is the error of the
+// forces.
 constexpr double kStiffness = 0.1;
 
 bool is_definite(const Eigen::MatrixXd& hessian) {

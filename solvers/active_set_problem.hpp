@@ -11,11 +11,11 @@
 
 namespace mpm {
 
-/// The constant part of a QP as the active-set method works on it (docs/active_set.md).
+/// The constant part of a QP in the form in which the active-set method uses it (docs/active_set.md).
 ///
-/// A slack that belongs to one row and has quadratic cost only is eliminated: what is left of it is the
-/// penalty w dist(a_i x, [soft_lower_i, soft_upper_i])^2. Every other slack stays a variable, so that the
-/// variables are z = (x, s) with s the kept slacks.
+/// A slack that belongs to one row and has quadratic cost only is eliminated, which leaves the penalty w
+/// dist(a_i x, [soft_lower_i, soft_upper_i])^2. Every other slack stays a variable, so that the variables are
+/// z = (x, s), where s are the kept slacks.
 ///
 /// | symbol  | member             | shape | meaning                                                       |
 /// |---------|--------------------|-------|---------------------------------------------------------------|
@@ -28,7 +28,7 @@ namespace mpm {
 /// | H, A    | lanes              |       | for the kernels                                               |
 struct ActiveSetProblem {
   explicit ActiveSetProblem(const QpStructure& structure);
-  /// With what others use, too: `lanes` of the structure.
+  /// The same with the `lanes` of the structure, which others use as well.
   ActiveSetProblem(const QpStructure& structure, std::shared_ptr<const LaneProgram> lanes);
 
   Eigen::Index variable_count() const { return quadratic.rows(); }

@@ -16,8 +16,8 @@ bool SchurFactor::append(const Eigen::Ref<const Eigen::VectorXd>& lower, double 
   return true;
 }
 
-// Without row k the rows below it have lost the column k: its outer product is given back to the triangle
-// that remains by plane rotations. A row takes those of the rows above it, one after the other, and then
+// When row k is removed, the rows below it lose column k. Plane rotations give its outer product back to the
+// triangle that remains. Each row takes the rotations of the rows above it, one after the other, and then
 // makes its own.
 void SchurFactor::remove(Eigen::Index k) {
   --size_;

@@ -17,15 +17,15 @@ class SchurFactor {
   Eigen::Index size() const { return size_; }
   void clear() { size_ = 0; }
 
-  /// Appends a row to S with the products c with the present rows and the diagonal s: `lower` is inv(L) c, as
-  /// `solve_lower` gives it, and `left` is the rest of the diagonal, s - lower' lower. Returns false, and
-  /// appends nothing, when there is no room or no rest (`left` <= 0, or NaN).
+  /// Appends a row to S, which has the products c with the present rows and the diagonal s. `lower` is inv(L)
+  /// c, as `solve_lower` gives it, and `left` is what remains of the diagonal, s - lower' lower. Returns
+  /// false, and appends nothing, if there is no room or if nothing remains (`left` <= 0, or NaN).
   bool append(const Eigen::Ref<const Eigen::VectorXd>& lower, double left);
 
-  /// Takes out row and column `k`; the later ones move up.
+  /// Removes row and column `k`; the later ones move up.
   void remove(Eigen::Index k);
 
-  /// inv(L) b, inv(L') b and inv(S) b in place, of the first `size()` numbers.
+  /// inv(L) b, inv(L') b and inv(S) b in place, for the first `size()` numbers.
   void solve_lower(Eigen::VectorXd& b) const;
   void solve_upper(Eigen::VectorXd& b) const;
   void solve_in_place(Eigen::VectorXd& b) const;

@@ -15,12 +15,12 @@
 namespace mpm {
 namespace {
 
-// A problem whose least possible largest violation of the hard limits is proven to be above this has no
-// feasible point; below it, it is feasible within rounding.
+// If the least possible largest violation of the hard limits is proven to be above this, the problem has no
+// feasible point; below it, the problem is feasible within rounding.
 constexpr double kInfeasible = 1e-9;
 
-// Nearly parallel limits share their force at a rate that no stiffness makes fast: after `kPatience` rounds
-// `kAcceptable` times the tolerance will do.
+// Nearly parallel limits divide their force among them only slowly, however stiff they are: after `kPatience`
+// rounds, `kAcceptable` times the tolerance is enough.
 constexpr int kPatience = 12;
 constexpr double kAcceptable = 5.0;
 constexpr double kProgress =
@@ -28,13 +28,13 @@ constexpr double kProgress =
 constexpr double kStiffer = 16.0;  // a power of two: taking it back is exact
 constexpr double kStiffest = 0x1p20;
 
-constexpr double kCertified = 1e-8;  // KKT residual up to which an answer counts as one
+constexpr double kCertified = 1e-8;  // largest KKT residual of an answer that is accepted
 
-// An error that is small in units of the program's own size may be large in the units of the caller: the
-// tolerance in the former is this share of that in the latter.
+// An error that is small in units of the program's own size may be large in the units of the caller. In the
+// program's own units, the tolerance is therefore this share of the caller's.
 constexpr double kEquilibratedTolerance = 1e-3;
 
-// Families of springs, in this order; those of kept slacks exist only when there are such slacks.
+// Families of springs, in this order; those of kept slacks exist only if there are such slacks.
 constexpr std::size_t kSoft = 0, kHard = 1, kSlackUpper = 2;
 
 std::vector<LimitSprings> make_families(const ActiveSetProblem& problem) {
@@ -119,8 +119,8 @@ void ActiveSetSolver::reset_newton() {
 
 void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
   certificate_.setZero();
-  // Huge multipliers, of a problem at the edge of having no answer, can hide from the tests of a method that
-  // its answer is none: all that have some are looked at as a whole.
+  // If a problem is at the edge of having no answer, its huge multipliers can hide from the tests of a method
+  // that its answer is wrong. Every answer with multipliers is therefore checked as a whole.
   if (vertex_ && vertex_->solve(data, result) && has_residual_below(kCertified, data, result)) {
     result.iterations = 1;
     return;
@@ -135,7 +135,7 @@ void ActiveSetSolver::do_solve(const QpData& data, QpResult& result) {
 void ActiveSetSolver::search(const QpData& data, QpResult& result) {
   result.iterations = 0;
   bind_costs(data);
-  // Few limits are active where slacks are shared, and those nearly parallel: the dual method's case.
+  // If slacks are shared, few limits are active, and these are nearly parallel: the dual method's case.
   const bool dual_first = !problem_.needs_proximal() && !problem_.kept_slacks.empty();
   if (dual_first && solve_by_dual(data, result))
     return;
@@ -182,7 +182,7 @@ bool ActiveSetSolver::solve_by_dual(const QpData& data, QpResult& result) {
   return false;
 }
 
-// Where Q is only semidefinite: proximal terms, whose centre follows the answer until they are nothing.
+// If Q is only semidefinite, proximal terms are added, whose centre follows the answer until they vanish.
 DualOutcome ActiveSetSolver::iterate_dual(const QpData& data, int& iterations) {
   const double scale = std::max(1.0, data.gradient.lpNorm<Eigen::Infinity>());
   centre_.setZero();
@@ -223,7 +223,7 @@ void ActiveSetSolver::bind_limits(const QpData& data) {
   newton_.centre.vector().setZero();
   if (stiffening_ != 1.0)
     stiffen(1.0 / stiffening_);
-  // Hard limits are seldom active: they come in when the warm start has one, or when the answer breaks one.
+  // Hard limits are seldom active: they are enabled if the warm start has one, or when the answer breaks one.
   LimitSprings& hard = families_[kHard];
   hard.enabled = hard.multiplier.vector().lpNorm<Eigen::Infinity>() > 0.0;
   if (!hard.enabled)
@@ -292,8 +292,8 @@ bool ActiveSetSolver::hard_limits_kept(const QpData& data) const {
                                    .slack = nullptr}) <= options_.tolerance;
 }
 
-// The method of multipliers: the forces become the multipliers. Returns how far that is from a solution: the
-// largest violation of a limit, or force times distance to its limit relative to `scale`.
+// One round of the method of multipliers: the forces become the multipliers. Returns the distance from a
+// solution: the largest violation of a limit, or force times distance to its limit relative to `scale`.
 double ActiveSetSolver::update_multipliers(double scale) {
   double residual = 0.0;
   if (families_[kHard].enabled)
@@ -315,8 +315,8 @@ double ActiveSetSolver::update_multipliers(double scale) {
   return residual;
 }
 
-// Multipliers of an infeasible problem grow without end, in a direction that proves it. What shrinks at a row
-// without an opposite limit is not of that direction.
+// The multipliers of an infeasible problem grow without end, in a direction that proves it. A component that
+// shrinks, at a row without an opposite limit, does not belong to that direction.
 bool ActiveSetSolver::proves_infeasible(const QpData& data, const Eigen::VectorXd& y) {
   certificate_ = y;
   for (Eigen::Index i = 0; i < certificate_.size(); ++i)

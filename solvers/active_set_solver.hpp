@@ -19,11 +19,11 @@ struct ActiveSetOptions {
   /// Largest violation of a limit, and largest error of stationarity and complementarity relative to
   /// max(1, |g|), of an answer `solved`.
   double tolerance = 1e-10;
-  /// Newton steps of one solve, all rounds together.
+  /// Most Newton steps of one solve, all rounds together.
   int iteration_limit = 1000;
-  /// Rounds of multipliers and proximal centres of one solve.
+  /// Most rounds of multipliers and proximal centres of one solve.
   int round_limit = 200;
-  /// Whether a program without an answer is tried again in units in which its numbers are of one size.
+  /// Whether a program without an answer is tried again in units in which its numbers are of similar size.
   bool equilibrate = true;
 
   /// Throws InputError when a number is out of range.
@@ -34,14 +34,14 @@ struct ActiveSetOptions {
 ///
 /// Soft limits with a slack of their own are penalties; Newton's method with an exact line search finds the
 /// minimiser of the resulting piecewise quadratic over the box in a few steps, exactly. Limits that must hold
-/// (hard limits, soft limits that share a slack) are handled by the method of multipliers around it, shared
-/// slacks by a dual active-set method first. Where the Hessian is only semidefinite (the target optimizer, a
-/// linear program) proximal terms are added and taken back (docs/active_set.md); while the active limits of a
-/// linear program stay, its next answer is their vertex. A program to which all this finds no answer is tried
-/// once more in other units (EquilibratedProgram).
+/// (hard limits, soft limits that share a slack) are handled by the method of multipliers around it; shared
+/// slacks are first tried by a dual active-set method. If the Hessian is only semidefinite (the target
+/// optimizer, a linear program), proximal terms are added and taken back (docs/active_set.md). While the
+/// active limits of a linear program stay the same, its next answer is their vertex. A program to which all
+/// this finds no answer is tried once more in other units (EquilibratedProgram).
 ///
 /// `infeasible` is returned only with a certificate, see `certificate`. `iteration_limit` and
-/// `numerical_error` mean that there is no answer; an unbounded problem ends so.
+/// `numerical_error` mean that there is no answer; an unbounded problem ends with one of them.
 ///
 /// Among several minimisers (H semidefinite) the answer is the one nearest to the origin in the directions
 /// that H leaves open, provided that the proximal weight is small against the costs (Mangasarian & Meyer,
@@ -85,11 +85,11 @@ class ActiveSetSolver final : public QpSolver {
   ActiveSetNewton newton_;
   DualActiveSet dual_;
   std::optional<LinearVertex> vertex_;    ///< of a linear program
-  Eigen::VectorXd centre_, dual_linear_;  ///< of the proximal term, and the costs with it, of the dual method
+  Eigen::VectorXd centre_, dual_linear_;  ///< dual method: proximal centre, and costs with the proximal term
   Eigen::VectorXd certificate_;
-  Eigen::VectorXd change_;  ///< of the multipliers of the hard rows in the last round
+  Eigen::VectorXd change_;  ///< change of the multipliers of the hard rows in the last round
   Eigen::VectorXd scratch_;
-  double stiffening_ = 1.0;  ///< of the springs with multipliers, in this solve
+  double stiffening_ = 1.0;  ///< factor on the stiffness of springs with multipliers, in this solve
 
   struct Equilibrated;
   std::unique_ptr<Equilibrated> equilibrated_;  ///< made when first needed

@@ -36,7 +36,7 @@ SpringArrays LimitSprings::arrays() {
           .stretched = stretched_bits_.data()};
 }
 
-// What a product with numbers that are not finite leaves behind the last row is no spring.
+// A product with numbers that are not finite may leave something behind the last row, which is no spring.
 void LimitSprings::list_stretched() {
   if (const Eigen::Index rest = size() % 8; rest != 0)
     stretched_bits_[static_cast<std::size_t>(size() / 8)] &= static_cast<unsigned char>((1U << rest) - 1U);

@@ -33,27 +33,27 @@ struct LimitSprings {
   /// Sets the limits of the family from those of the rows, shifted by the multipliers.
   void set_limits(const Eigen::VectorXd& row_lower, const Eigen::VectorXd& row_upper);
 
-  /// Sets the values v for the row values A x and z. Without slacks they are the row values, which must stay
-  /// where they are and follow every step before `advance`.
+  /// Sets the values v from the row values A x and z. Without slacks v refers to the row values, which must
+  /// stay at their place and follow every step before `advance`.
   void place(const ActiveSetProblem& problem, const LaneVector& row_value, const LaneVector& z);
   /// Sets the step, the change of v along a direction; `row_step` as row_value in `place`.
   void aim(const ActiveSetProblem& problem, const LaneVector& row_step, const LaneVector& p);
 
   /// Sets `force` from v.
   void pull();
-  /// The force of the stretched springs, at the same ends, as if they could also push; none where the limit
-  /// is gone.
+  /// Sets the force of the stretched springs, at the ends where they are, as if they could also push; zero
+  /// where the limit no longer exists.
   void pull_stretched();
-  /// Force zero, wherever the springs are.
+  /// Sets the force to zero, wherever the springs are.
   void release();
   /// The stretched springs, in increasing order.
   const std::vector<int>& stretched_rows() const { return stretched_rows_; }
   const RowBits& stretched_bits() const { return stretched_bits_; }
 
-  /// Finds the springs that a whole step would stretch, release or take to their other end; false when there
-  /// is none: then the penalty is one quadratic all along the step.
+  /// Finds the springs that a whole step would stretch, release or take to their other end. Returns false if
+  /// there is none: then the penalty is one quadratic all along the step.
   bool find_changing();
-  /// Second derivative of the penalty where the step begins, of all springs and of those that change. The
+  /// Second derivative of the penalty at the start of the step: of all springs, and of those that change. The
   /// others keep theirs all along the step: a spring that is stretched (or not) at both ends is so in
   /// between.
   double curvature();
@@ -72,7 +72,8 @@ struct LimitSprings {
   LaneVector force;
 
  private:
-  /// Numbers of the springs: those of the rows, with the slacks' share in `own` where there are slacks.
+  /// Numbers of the springs: those of the rows or, if there are slacks, copies in `own` with the slacks'
+  /// share.
   struct Numbers {
     const double* data = nullptr;
     LaneVector own;
@@ -85,9 +86,9 @@ struct LimitSprings {
 
   Numbers value_, step_;
   bool everywhere_;                ///< every row has a spring
-  RowBits stretched_bits_, none_;  ///< what follows from `force`; no row
+  RowBits stretched_bits_, none_;  ///< the rows where `force` is not 0; no row
   std::vector<int> stretched_rows_;
-  std::vector<int> changing_;  ///< as long as there are rows, of which the first `changing_count_` count
+  std::vector<int> changing_;  ///< has room for all rows; the first `changing_count_` are valid
   std::size_t changing_count_ = 0;
 };
 

@@ -14,10 +14,10 @@ class IpoptSolver;
 /// the method returns only with a proof.
 bool is_certified(const QpResult& result);
 
-/// The active-set method, and Ipopt for the problems to which it gives no certified answer; these are marked
-/// `from_ipopt`. Because of Ipopt, the rule of IpoptSolver holds here too: one thread of a process only.
-/// Where Ipopt cannot run, such problems are counted, so that another process can solve them: up to the first
-/// of them the answers are the same, bit for bit.
+/// The active-set method, with Ipopt for the problems to which it gives no certified answer; the answers of
+/// Ipopt are marked `from_ipopt`. Because of Ipopt, the rule of IpoptSolver holds here too: only one thread
+/// of a process may use it. Where Ipopt cannot run, such problems are counted, so that another process can
+/// solve them: up to the first of them the answers are the same, bit for bit.
 class CertifiedSolver final : public QpSolver {
  public:
   /// Asks Ipopt, or adds 1 to `left_to_others`, which must outlive it, for each problem that needs it. Throws

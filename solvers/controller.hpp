@@ -27,7 +27,7 @@ struct ControlMove {
   Eigen::VectorXd u_target;   ///< targets of the optimizer, nu
   double kkt_residual = 0.0;  ///< the larger of the two problems' residuals
   int iterations = 0;         ///< of the solver, both problems
-  int fallbacks = 0;          ///< problems whose answer is Ipopt's, see CertifiedSolver
+  int fallbacks = 0;          ///< problems that Ipopt answered, see CertifiedSolver
 };
 
 /// Decides on the MVs of a loop: the Mpc of this program, or a controller from outside. y(k) and d(k)
@@ -54,36 +54,36 @@ class Controller {
   virtual const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
                                   const Eigen::Ref<const Eigen::VectorXd>& d) = 0;
 
-  /// MVs that act from the last step on instead of those of its move, because something is added to them
-  /// that the controller knows, such as a test signal. Throws InputError as reset().
+  /// Sets the MVs that act from the last step on instead of those of its move, because something that the
+  /// controller knows, such as a test signal, is added to them. Throws InputError as reset().
   virtual void set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) = 0;
 
   /// Replaces the soft limits of the CVs from the next step on.
   virtual void set_cv_soft(const Limits& limits) = 0;
 
-  /// The variables that operators have switched off, from the next step on until the next call; none at
+  /// Sets the variables that operators have switched off, from the next step on until the next call; none at
   /// first. An MV that is off is held at a position and acts as a measured disturbance does: its moves and
   /// targets are this position, and the next move is counted from there. A CV that is off affects only the
-  /// output bias. Throws InputError for what SwitchedOff::validate() refuses, and if the CVs that are left do
-  /// not determine the moves (MpcQp).
+  /// output bias. Throws InputError for what SwitchedOff::validate() refuses, and if the remaining CVs do not
+  /// determine the moves (MpcQp).
   virtual void set_off(const SwitchedOff& off) = 0;
 
-  /// The setpoints from the next step on; ny numbers, of which those of CVs without a setpoint are not read.
-  /// They are zero until this is called.
+  /// Sets the setpoints from the next step on: ny numbers, of which those of CVs without a setpoint are not
+  /// read. They are zero until the first call.
   virtual void set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) = 0;
 
-  /// The MVs at which a loop starts: the economic optimum (6.19) for measured disturbances `d`, the setpoints
-  /// as they are and no bias; without targets zero, the operating point of the model. Depends on its
-  /// arguments alone.
+  /// The MVs at which a loop starts: the economic optimum (6.19) for measured disturbances `d`, with the
+  /// setpoints as they are and no bias. Without targets they are zero, the operating point of the model. They
+  /// do not depend on earlier steps.
   virtual Eigen::VectorXd nominal_target(const Eigen::Ref<const Eigen::VectorXd>& d) = 0;
 
   /// The problems of the last step, to be solved again. A controller that does not pose its problems here has
-  /// none, and without targets there is no target problem. When the targets have no answer, the moves are
-  /// those of an earlier step.
+  /// none, and without targets there is no target problem. If the targets have no answer, the move problem is
+  /// that of an earlier step.
   virtual std::optional<SolvedQp> target_problem() const { return std::nullopt; }
   virtual std::optional<SolvedQp> move_problem() const { return std::nullopt; }
 
-  /// Why the status of the last move is `failed`, for people.
+  /// Tells people why the status of the last move is `failed`.
   virtual std::string failure() const { return "the solver gave no answer"; }
 };
 

@@ -6,7 +6,7 @@
 namespace mpm {
 namespace {
 
-/// The power of two next to 1 / size; 1 for a size of 0.
+/// The power of two nearest to 1 / size; 1 for a size of 0.
 double inverse_power(double size) {
   return size > 0.0 ? std::exp2(-std::round(std::log2(size))) : 1.0;
 }
@@ -20,7 +20,8 @@ Eigen::VectorXd variable_units(const QpStructure& qp) {
   return units;
 }
 
-/// Length of each row in the units of the variables; where rows share a slack, that of the longest.
+/// Length of each row in the units of the variables; for rows that share a slack, that of the longest of
+/// them.
 Eigen::VectorXd row_lengths(const QpStructure& qp, const Eigen::VectorXd& units) {
   Eigen::VectorXd lengths = (qp.rows * units.asDiagonal()).rowwise().norm();
   Eigen::VectorXd longest = Eigen::VectorXd::Zero(qp.slack_count());

@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// A QP whose variables and rows are scaled so that its numbers are of one size:
+/// A QP whose variables and rows are scaled so that its numbers are of similar size:
 ///
 ///     x = D x',   D_j = 1/sqrt(H_jj),  or 1/max_i |a_ij| where H_jj = 0
 ///     a_i' = r_i a_i D,   r_i = 1/|a_i D|,  the same for all rows of one slack: s' = r_i s
@@ -23,7 +23,7 @@ class EquilibratedProgram {
 
   const std::shared_ptr<const QpStructure>& structure() const { return structure_; }
 
-  /// `data` in these units; valid until the next call. Allocates nothing.
+  /// Returns `data` in the scaled units; valid until the next call. Allocates nothing.
   const QpData& scaled(const QpData& data);
 
   /// Scales an answer back to the original units: status, x, slack and multipliers.

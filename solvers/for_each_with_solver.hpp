@@ -13,7 +13,7 @@ namespace mpm {
 using ForEachWithSolver = std::function<void(
     std::size_t count, const std::function<void(std::size_t index, const QpSolverFactory& factory)>& body)>;
 
-/// The calls one after another.
+/// Makes the calls one after another.
 inline ForEachWithSolver in_turn(QpSolverFactory factory) {
   return [factory = std::move(factory)](std::size_t count, const auto& body) {
     for (std::size_t i = 0; i < count; ++i)

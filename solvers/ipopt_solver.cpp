@@ -20,10 +20,10 @@ namespace mpm {
 namespace {
 
 constexpr double kIpoptInfinity = 2e19;           // Ipopt reads anything beyond 1e19 as no limit
-constexpr double kRowTolerance = 1e-9;            // a left-out limit counts as kept up to here
+constexpr double kRowTolerance = 1e-9;            // a left-out limit counts as kept up to this violation
 constexpr double kInfeasibilityThreshold = 1e-7;  // smallest violation that proves infeasibility
 constexpr std::size_t kManyRows = 200;            // of P1's 1 620 some 130 are in the set at a quiet step
-constexpr double kPushing = 1e-6;                 // multiplier of a limit that pushes
+constexpr double kPushing = 1e-6;                 // least multiplier of a limit that pushes
 
 double finite_limit(double limit) {
   return std::clamp(limit, -kIpoptInfinity, kIpoptInfinity);
@@ -118,7 +118,7 @@ class ProgramForIpopt final : public Ipopt::TNLP {
                          const Ipopt::IpoptData*, Ipopt::IpoptCalculatedQuantities*) override {
     using Map = Eigen::Map<const Eigen::VectorXd>;
     program_.report(set_, *data_, Map(x, n), Map(z_upper, n) - Map(z_lower, n), Map(lambda, m), *result_);
-    // Ipopt removes fixed variables and returns no multiplier for them: it is what stationarity leaves.
+    // Ipopt removes fixed variables and returns no multiplier for them; stationarity gives it.
     for (Eigen::Index i = 0; i < structure_.variable_count(); ++i)
       if (data_->lower(i) == data_->upper(i))
         result_->bound_dual(i) = -(structure_.hessian.row(i).dot(result_->x) + data_->gradient(i) +
@@ -129,7 +129,7 @@ class ProgramForIpopt final : public Ipopt::TNLP {
   Index variables() const { return static_cast<Index>(program_.variable_count()); }
   Index constraints() const { return static_cast<Index>(program_.constraint_count()); }
 
-  /// The pattern of a matrix where there is no room for values, its values otherwise.
+  /// Writes the pattern of a matrix if there is no room for values, otherwise its values.
   static void write_entries(const std::vector<MatrixEntry>& entries, double factor, Index* row, Index* column,
                             Number* values) {
     for (std::size_t k = 0; k < entries.size(); ++k)
@@ -162,7 +162,7 @@ bool has_impossible_row(const QpStructure& structure, const QpData& data) {
   return false;
 }
 
-/// No answer to start from.
+/// Clears the answer: there is none to start from.
 void forget_answer(QpResult& result) {
   result.x.setZero();
   result.slack.setZero();
@@ -225,9 +225,9 @@ class IpoptSolver::Implementation {
     settings->SetStringValue("hessian_constant", "yes");
     settings->SetStringValue("jac_d_constant", "yes");
     settings->SetStringValue("linear_solver", "mumps");
-    // The last answer is near: less has to be taken back than from Ipopt's own 0.1 (docs/performance.md).
+    // The last answer is near, and Ipopt's own 0.1 would lead away from it first (docs/performance.md).
     settings->SetNumericValue("mu_init", 1e-3);
-    // Ipopt's own steps are scaled well enough; what MUMPS does about scaling takes longer than it saves.
+    // Ipopt's own steps are scaled well enough; scaling by MUMPS takes longer than it saves.
     settings->SetIntegerValue("mumps_scaling", 0);
     settings->SetIntegerValue("mumps_permuting_scaling", 0);
     // An empty name: an ipopt.opt that lies in the current folder must not change the answers.
@@ -326,8 +326,8 @@ void IpoptSolver::run(const QpData& data, QpResult& result) {
     result.status = QpStatus::solved;
 }
 
-// The smallest t with hard_lower - t <= Ax <= hard_upper + t within the box, as a soft-constrained program
-// with one slack: the soft limits are the hard ones.
+// Finds the smallest t with hard_lower - t <= Ax <= hard_upper + t within the box, as a soft-constrained
+// program with one slack, whose soft limits are the hard ones.
 bool IpoptSolver::certainly_infeasible(const QpData& data) {
   const Eigen::Index m = structure().row_count();
   if (!(data.hard_lower.array() > -kInfinity).any() && !(data.hard_upper.array() < kInfinity).any())

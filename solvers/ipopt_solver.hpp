@@ -10,8 +10,8 @@ struct IpoptOptions {
   /// Convergence tolerance of Ipopt (its `tol`, and the absolute ones for feasibility and complementarity).
   double tolerance = 1e-10;
   int iteration_limit = 300;
-  /// Solve over a working set of row limits, grown until no left-out limit is violated; the answer is that of
-  /// the full problem (see WorkingSet). Otherwise every limit is handed to Ipopt at once.
+  /// Whether to solve over a working set of row limits, which grows until no left-out limit is violated; the
+  /// answer is that of the full problem (see WorkingSet). Otherwise Ipopt gets every limit at once.
   bool working_set = true;
   /// A limit nearer than this to the last answer enters the working set too: it saves rounds, and changes
   /// the answer only within the tolerance.
@@ -29,10 +29,10 @@ struct IpoptOptions {
 ///
 /// Ipopt sees the problem as ReducedProgram writes it.
 ///
-/// An answer `infeasible` is certified: the smallest possible largest violation of the hard row limits
-/// within the box, itself found as a linear program, is above 1e-7. When the working set gives no answer, all
-/// limits are tried at once, and a run that Ipopt ends as a failure counts as solved if its point passes
-/// kkt_residual() with at most 1e-7.
+/// An answer `infeasible` is certified: the smallest possible largest violation of the hard row limits within
+/// the box, itself found as a linear program, is above 1e-7. If the working set gives no answer, all limits
+/// are tried at once. A run that Ipopt ends as a failure counts as solved if its point passes kkt_residual()
+/// with at most 1e-7.
 ///
 /// The time limit of a problem (set_time_limit()) is processor time of the thread, checked between
 /// iterations. Throws std::bad_alloc when Ipopt has no memory.
@@ -55,7 +55,7 @@ class IpoptSolver final : public QpSolver {
   bool certainly_infeasible(const QpData& data);
 
   IpoptOptions options_;
-  double end_ = 0.0;  ///< of the time of the problem, as thread_seconds()
+  double end_ = 0.0;  ///< of the time for the problem, on the clock thread_seconds()
   std::unique_ptr<Implementation> implementation_;
   std::unique_ptr<IpoptSolver> feasibility_;  ///< made when first needed
 };

@@ -22,7 +22,7 @@ void LateMeasurements::reset(const LinearPlant& model, const Eigen::Ref<const Ei
 
 void LateMeasurements::advance(const Eigen::Ref<const Eigen::VectorXd>& input) {
   if (sample_ >= past_.cols())
-    settled_.advance(past(sample_));  // the oldest one
+    settled_.advance(past(sample_));  // with the oldest input
   past(sample_) = input;
   ++sample_;
 }

@@ -8,10 +8,10 @@
 namespace mpm {
 namespace {
 
-/// A multiplier that is nearer to the end of its range, relative to max(1, |g|), leaves open which limits are
-/// active.
+/// If a multiplier is nearer than this to the end of its range, relative to max(1, |g|), it is open which
+/// limits are active.
 constexpr double kMargin = 1e-8;
-/// Limits whose normals are so near to dependent have no vertex that can be computed.
+/// If the normals of limits are nearer than this to dependent, their vertex cannot be computed.
 constexpr double kDependentNormals = 1e-9;
 
 double margin_of(const QpData& data) {
@@ -55,7 +55,7 @@ void LinearVertex::take(const QpData& data, const QpResult& answer) {
     factor();
 }
 
-/// One more than n of them are enough to know that there is no vertex.
+/// Lists at most n + 1 limits: these are enough to know that there is no vertex.
 void LinearVertex::find_active(const QpResult& answer, double margin) {
   found_.clear();
   const auto add = [&](Limit limit, Eigen::Index index, double multiplier) {
@@ -103,7 +103,8 @@ bool LinearVertex::solve(const QpData& data, QpResult& result) {
   return true;
 }
 
-/// False when a limit of the vertex is absent. What is at a limit is there exactly, in spite of rounding.
+/// Returns false if a limit of the vertex is absent. A value at a limit is set to it exactly, in spite of
+/// rounding.
 bool LinearVertex::solve_equations(const QpData& data) {
   const auto place = [&](const Active& active) {
     switch (active.limit) {

@@ -9,30 +9,30 @@
 
 namespace mpm {
 
-/// The vertex at which the last answer of a linear program lies. While its limits stay the active ones, and
-/// from sample to sample they mostly do, the next answer takes n equations: with N the normals of these
-/// limits (n x n), b where they lie, and c the gradient g with the prices l_q of the rows beyond a soft
-/// limit, plus l_q a_i beyond the upper and minus l_q a_i beyond the lower one,
+/// The vertex at which the last answer of a linear program lies. While its active limits stay the same, as
+/// they mostly do from sample to sample, n equations give the next answer. N are the normals of these limits
+/// (n x n), b are their values, and c is the gradient g with the prices l_q of the rows beyond a soft limit:
+/// plus l_q a_i beyond the upper limit, minus l_q a_i beyond the lower one. Then
 ///
 ///     N x = b,    N' lambda = -c.
 ///
-/// x is the only minimiser when the other limits are kept, rows beyond a soft limit stay there, and every
-/// multiplier is on the side of its limit and, where that is soft, below the price (the simplex method's test
-/// of a vertex, with strict complementarity).
+/// x is the only minimiser if the other limits are kept, rows beyond a soft limit stay there, and every
+/// multiplier is on the side of its limit and, if that limit is soft, below the price (the simplex method's
+/// test of a vertex, with strict complementarity).
 class LinearVertex {
  public:
-  /// Whether programs of this structure are linear, with a slack for each soft row alone.
+  /// Whether programs of this structure are linear, and each soft row has a slack of its own.
   static bool applies(const QpStructure& structure);
 
-  /// `structure` must apply and outlive it.
+  /// `structure` must pass applies() and outlive this object.
   explicit LinearVertex(const QpStructure& structure);
 
-  /// Goes to the vertex of an answer; to none when the answer is degenerate or one of several.
+  /// Takes the vertex of an answer; none if the answer is degenerate or one of several.
   void take(const QpData& data, const QpResult& answer);
   void forget() { active_.clear(); }
 
-  /// Fills x, slack and multipliers of `result`, if the vertex is the only minimiser; else false. Allocates
-  /// nothing.
+  /// Fills x, slack and multipliers of `result` if the vertex is the only minimiser; otherwise returns false.
+  /// Allocates nothing.
   bool solve(const QpData& data, QpResult& result);
 
  private:
@@ -54,11 +54,11 @@ class LinearVertex {
   void report(const QpData& data, QpResult& result) const;
 
   const QpStructure& structure_;
-  std::vector<Active> active_, found_;  ///< n of them; none without a vertex
+  std::vector<Active> active_, found_;  ///< limits of the vertex, none or n, and those of an answer
   Eigen::VectorXi beyond_;  ///< of each row: 1 beyond its upper soft limit, -1 beyond its lower one
   Eigen::MatrixXd normals_;
   Eigen::PartialPivLU<Eigen::MatrixXd> factor_;      ///< of N
-  Eigen::PartialPivLU<Eigen::MatrixXd> transposed_;  ///< of N': that of N would allocate to solve with N'
+  Eigen::PartialPivLU<Eigen::MatrixXd> transposed_;  ///< of N'; factor_ would allocate to solve with N'
   Eigen::VectorXd place_, x_, cost_, multiplier_, row_value_;
 };
 

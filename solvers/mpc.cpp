@@ -155,8 +155,8 @@ void Mpc::pass_on_limits() {
   pass_on_targets();
 }
 
-/// The target optimizer sees a setpoint as a range without width, of a CV that integrates its rate, and of
-/// one that is off nothing.
+/// To the target optimizer, a setpoint is a range of width 0. The rate of a CV that integrates has the range
+/// 0, and a CV that is off has no limits.
 void Mpc::pass_on_targets() {
   if (!targets_)
     return;
@@ -200,7 +200,7 @@ const ControlMove& Mpc::step(const Eigen::Ref<const Eigen::VectorXd>& y,
     model_.advance(input_);
   if (is_pending_ && late_)
     late_->advance(input_);
-  // What is known now of the sample before changes its bias: it is no ramp.
+  // Late measurements change the bias of the sample before. This change does not count as a ramp.
   if (late_ && late_->correct(d, model_))
     for (const Eigen::Index cv : integrating_)
       bias_(cv) += y_model_(cv) - late_->output_before()(cv);

@@ -27,15 +27,15 @@ namespace mpm {
 ///    of an analyser, y_sim is taken at the sample of the analysis; MDs that are measured late act in it from
 ///    the time of their measurement (LateMeasurements). The bias of a CV that integrates may have a
 ///    ramp, r(k) = r(k-1) + alpha (b(k) - b(k-1) - r(k-1)), because unknown flows act on a level all the
-///    time. Its prediction l samples ahead has b(k) + l r(k).
+///    time. Its prediction l samples ahead then adds b(k) + l r(k).
 /// 2. The targets for the steady state K_d d(k) + b(k) + K u (6.19). A CV that integrates is at a steady
-///    state where its rate is 0, K_d and K are those of the rate, and r stands for b; a rate counts by the
-///    change that it makes to the CV over the prediction horizon.
+///    state if its rate is 0: K_d and K are then the gains of the rate, and r replaces b. A rate is weighted
+///    by the change that it makes to the CV over the prediction horizon.
 /// 3. The moves from the free response with MVs held at u(k-1) and MDs held at d(k) (6.20). Setpoints are
 ///    those of this sample, held over the horizon: the controller does not know their changes beforehand.
 ///
 /// An MV that is off (SwitchedOff) is an input that the model knows: it stays where it is held in both
-/// problems, the structures of which do not change. A CV that is off has no limits in either; where it has a
+/// problems, whose structures do not change. A CV that is off has no limits in either problem; if it has a
 /// setpoint, the moves come from a second program without it.
 ///
 /// | symbol | meaning                     | shape |
@@ -50,12 +50,12 @@ class Mpc final : public Controller {
   void reset(const Eigen::Ref<const Eigen::VectorXd>& u, const Eigen::Ref<const Eigen::VectorXd>& d) override;
   const ControlMove& step(const Eigen::Ref<const Eigen::VectorXd>& y,
                           const Eigen::Ref<const Eigen::VectorXd>& d) override;
-  /// The model is advanced with them; the next move is still counted from the last one.
+  /// The model is advanced with these MVs; the next move is still counted from the last one.
   void set_acting(const Eigen::Ref<const Eigen::VectorXd>& u) override;
-  /// In the MPC and in the target optimizer, as set_setpoints().
+  /// Applies to the MPC and to the target optimizer, as set_setpoints() does.
   void set_cv_soft(const Limits& limits) override;
-  /// Makes a program of its own the first time that just these CVs with a setpoint are off, and a solver
-  /// forgets its warm start when it is taken up again.
+  /// Makes a new program the first time that exactly these CVs with a setpoint are off. A solver forgets its
+  /// warm start when its program is taken up again.
   void set_off(const SwitchedOff& off) override;
   void set_setpoints(const Eigen::Ref<const Eigen::VectorXd>& y_set) override;
   /// Forgets the warm start of the target optimizer.
@@ -84,7 +84,7 @@ class Mpc final : public Controller {
   const QpSolverFactory factory_;
   Eigen::Index nu_;
   std::vector<Eigen::Index> integrating_;  ///< CVs
-  Eigen::MatrixXd md_gain_;  ///< at the steady state; of a CV that integrates over the prediction horizon
+  Eigen::MatrixXd md_gain_;  ///< steady-state gains; for a CV that integrates, over the prediction horizon
   LinearPlant model_, scratch_;
   std::optional<LateMeasurements> late_;
   std::map<std::vector<bool>, Program> programs_;  ///< by the CVs with a setpoint that are off

@@ -9,13 +9,13 @@
 
 // The terms of the objective of a model predictive controller. Each is a sum of squares over the horizon in
 // the planned MV positions relative to the last one, x = (v(0), ..., v(Hc-1)), v(i) = u(k+i) - u(k-1), and
-// adds its part to the Hessian and to the gradient of 1/2 x'Hx + g'x. A controller is the sum of those it
-// needs: (2.26), (3.8) and (3.30) have moves and setpoints, (3.33) moves alone, (6.20) moves and targets.
-// Weights are in the convention of the options.
+// adds its part to the Hessian and to the gradient of 1/2 x'Hx + g'x. A controller is the sum of the terms
+// that it needs: (2.26), (3.8) and (3.30) have moves and setpoints, (3.33) moves alone, (6.20) moves and
+// targets. Weights are in the convention of the options.
 
 namespace mpm {
 
-/// What the squares of a group of variables are multiplied by: the weights Q, or their squares.
+/// The factors of the squares of a group of variables: the weights Q, or their squares.
 Eigen::VectorXd effective_weight(const Eigen::VectorXd& weight, WeightConvention convention);
 
 /// What the terms refer to at one sample.
@@ -60,12 +60,12 @@ class TargetTracking {
 };
 
 /// sum_{l=1}^{Hp} sum_j Q_y,j |y_j(k+l) - r_j(k+l)|^2 over the CVs with a setpoint weight above 0. The sums
-/// of (2.26) and (6.20) begin at the sample k itself, which no move can change any more. r is y_set, or with
-/// a reference time the trajectory
+/// of (2.26) and (6.20) begin at the sample k itself, which no move can change any more. r is y_set or, if
+/// the CV has a reference time, the trajectory
 ///     r_j(k+l) = y_set,j + (y_j(k) - y_set,j) e^{-l Ts / tau_ref,j}.
 class SetpointTracking {
  public:
-  /// `forced` are the rows of forced_response(): cv * Hp + l - 1.
+  /// `forced` is the matrix of forced_response(), with the rows cv * Hp + l - 1.
   SetpointTracking(const MpcOptions& options, const RowMajorMatrix& forced);
   void add_hessian(Eigen::MatrixXd& hessian) const;
   void add_gradient(const MpcSample& sample, Eigen::VectorXd& gradient) const;

@@ -38,8 +38,8 @@ struct Limits {
 
 /// Tuning of a model predictive controller: which terms its objective has and which limits it keeps.
 ///
-/// Every CV may have a setpoint (setpoint_weight > 0), a soft range, hard limits, any two or all of them, or
-/// none; every MV a target (target_weight > 0) or none. The controllers of the thesis are special cases:
+/// Every CV may have a setpoint (setpoint_weight > 0), a soft range and hard limits, in any combination;
+/// every MV may have a target (target_weight > 0). The controllers of the thesis are special cases:
 ///
 /// | controller                        | setpoint_weight | cv_soft | target_weight |
 /// |-----------------------------------|-----------------|---------|---------------|
@@ -47,8 +47,8 @@ struct Limits {
 /// | setpoint MPC (2.26, 3.8, 3.30)    | > 0             | none    | 0             |
 /// | soft-constraint MPC (3.33)        | 0               | finite  | 0             |
 ///
-/// Where an MV has a target, a target optimizer (6.19) stands above the controller. It holds the setpoints of
-/// the CVs that have one, and the soft ranges of the others.
+/// If an MV has a target, a target optimizer (6.19) stands above the controller. It holds CVs that have a
+/// setpoint at it, and the others within their soft ranges.
 ///
 /// | symbol   | member             | shape | unit                        |
 /// |----------|--------------------|-------|-----------------------------|
@@ -74,17 +74,17 @@ struct MpcOptions {
   Eigen::VectorXd move_suppression;
   Eigen::VectorXd target_weight;
   Eigen::VectorXd setpoint_weight;  ///< 0: the CV has no setpoint
-  Eigen::VectorXd slack_weight;     ///< with slack_cost above 0 for a CV with a soft limit
+  Eigen::VectorXd slack_weight;     ///< its sum with slack_cost is above 0 for a CV with a soft limit
   Eigen::VectorXd slack_cost = {};  ///< linear cost of a slack; empty or 0: none
-  /// Time constant with which the CV is asked to approach its setpoint from where it is; empty or 0: at once.
+  /// Time constant with which the CV should approach its setpoint from where it is; empty or 0: at once.
   Eigen::VectorXd reference_time = {};
-  /// Of CVs that integrate, 0 to 1: the share of the change of the output bias from one sample to the next
-  /// that counts as its ramp, with which the prediction continues (Mpc). Empty or 0: the bias is a constant.
+  /// For CVs that integrate, 0 to 1: the share of the change of the output bias from one sample to the next
+  /// that counts as its ramp, which the prediction continues (Mpc). Empty or 0: the bias is a constant.
   Eigen::VectorXd bias_ramp = {};
-  /// Of CVs that an analyser measures: the output-bias feedback compares an analysis with the model at the
+  /// For CVs that an analyser measures: the output-bias feedback compares an analysis with the model at the
   /// sample at which it was taken. Empty: none.
   std::vector<AnalyserTiming> analysers = {};
-  /// Of MDs that are measured late: a value that is new was measured `delay` samples before, and the model is
+  /// For MDs that are measured late: a new value was measured `delay` samples before, and the model is
   /// corrected from there on (LateMeasurements). Empty: none.
   std::vector<AnalyserTiming> md_analysers = {};
   /// Samples for which each planned position of the MVs is held (move blocking). The last position is held to
@@ -98,17 +98,18 @@ struct MpcOptions {
   Limits cv_soft;
   Eigen::VectorXd mv_cost;
   /// Resting values of the MVs, held as far as the limits of the CVs allow: w_u (u_tgt - r_u)^2 in the
-  /// objective (6.19). Empty or weights of 0: nowhere.
+  /// objective (6.19). Empty or weights of 0: no resting values.
   Eigen::VectorXd resting_value = {}, resting_weight = {};
   /// Cost of a unit of steady-state violation of a CV soft limit in the target optimizer, relative to the
-  /// largest |mv_cost|. Large enough that limits are left only when no target keeps them (docs/methods.md).
+  /// largest slope of its objective, |mv_cost| without resting values. It is so large that limits are left
+  /// only if no target keeps them (docs/methods.md).
   double target_violation_cost = 1000.0;
   /// Processor seconds that Ipopt may take for one problem (QpSolver::set_time_limit()).
   double solver_time_limit = 10.0;
 
   bool has_setpoint(Eigen::Index cv) const { return setpoint_weight(cv) > 0.0; }
   bool has_setpoints() const { return (setpoint_weight.array() > 0.0).any(); }
-  /// A target optimizer chooses the targets of the MVs.
+  /// Whether a target optimizer chooses the targets of the MVs.
   bool has_targets() const { return (target_weight.array() > 0.0).any(); }
   bool has_soft_limit(Eigen::Index cv) const;
   bool has_soft_limits() const;

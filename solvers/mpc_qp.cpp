@@ -13,7 +13,8 @@
 namespace mpm {
 namespace {
 
-/// Below this quotient of the eigenvalues of the Hessian the moves are noise of the arithmetic.
+/// If the quotient of the smallest and largest eigenvalue of the Hessian is below this, the moves are
+/// rounding noise.
 constexpr double kSmallestReciprocalCondition = 1e-13;
 
 void require_determined(const Eigen::MatrixXd& hessian) {
@@ -118,7 +119,7 @@ const QpData& MpcQp::update(const MpcSample& sample) {
     data_.lower.segment(i * mv_count_, mv_count_) = mv_hard_.lower - sample.previous;
     data_.upper.segment(i * mv_count_, mv_count_) = mv_hard_.upper - sample.previous;
   }
-  // An MV outside of its limits returns as fast as it may.
+  // An MV outside of its limits returns as fast as its move limit allows.
   data_.lower.head(mv_count_) = data_.lower.head(mv_count_).cwiseMax(-move_limit_).cwiseMin(move_limit_);
   data_.upper.head(mv_count_) = data_.upper.head(mv_count_).cwiseMin(move_limit_).cwiseMax(-move_limit_);
   for (const Eigen::Index mv : held_)

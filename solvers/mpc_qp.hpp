@@ -18,17 +18,17 @@ namespace mpm {
 ///
 ///     move suppression + target tracking + setpoint tracking + sum_{j,l} tau_j delta_{j,l}^2
 ///
-/// (solvers/mpc_objective), subject to the MV limits as bounds of x and the CV limits as rows
-/// y(k+l) = free(k+l) + R x, l = 1..Hp. With a slack per CV, delta_{j,l} = delta_j and tau_j counts Hp times,
-/// as the sum over the horizon in (6.20) says. A limit of the moves bounds v(0), and v(i) - v(i-1) as a row
-/// after those of the CVs.
+/// (solvers/mpc_objective), subject to the MV limits as bounds of x and the CV limits as rows y(k+l) =
+/// free(k+l) + R x, l = 1..Hp. With a slack per CV, delta_{j,l} = delta_j and tau_j counts Hp times, as the
+/// sum over the horizon in (6.20) says. A move limit bounds v(0) directly, and v(i) - v(i-1) by a row after
+/// those of the CVs.
 ///
 /// Hessian and rows are constant; gradient and limits are affine in (free response, u(k-1), u_target, y_set,
-/// y(k)), except for v(0) where a move limit and an MV limit meet.
+/// y(k)), except for the limits of v(0) where a move limit and an MV limit meet.
 class MpcQp {
  public:
-  /// `options` must be valid for the model (see MpcOptions::validate). Throws InputError when they do
-  /// not determine the moves: a Hessian that is singular to rounding.
+  /// `options` must be valid for the model (see MpcOptions::validate). Throws InputError if they do not
+  /// determine the moves, because the Hessian is singular to rounding.
   MpcQp(const TransferMatrix& model, Eigen::Index mv_count, const MpcOptions& options);
 
   std::shared_ptr<const QpStructure> structure() const { return structure_; }
@@ -45,7 +45,7 @@ class MpcQp {
     cv_soft_ = soft;
   }
 
-  /// MVs that do not move: v_j(i) = 0 instead of their limits.
+  /// Sets the MVs that do not move: v_j(i) = 0 replaces their limits.
   void set_held(std::vector<Eigen::Index> mvs) { held_ = std::move(mvs); }
 
  private:

@@ -12,7 +12,7 @@ namespace mpm {
 
 /// The forced response of the CVs over the prediction horizon, linear in the planned MV positions.
 ///
-/// With v(i), i = 0..Hc-1, the MVs from sample k + start(i) on, relative to u(k-1), until the next position
+/// v(i), i = 0..Hc-1, are the MVs relative to u(k-1), from sample k + start(i) on until the next position
 /// acts; the last one is held to the end:
 ///     y(k+l) = free(k+l) + sum_i sum_j R[l, (i, j)] v_j(i),   l = 1..Hp,
 /// where free is the response to MVs held at u(k-1). R follows from the step responses S of the nominal

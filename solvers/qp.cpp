@@ -51,7 +51,7 @@ SlackArrays slack_arrays(const QpStructure& structure, const QpResult& result, c
           .pull = pull};
 }
 
-// Without a slack a row has no soft limits.
+// A row without a slack has no soft limits.
 void gather_slacks(const QpResult& result, KktWorkspace& w) {
   w.pull.setZero();
   for (const auto& [first, count, q] : w.runs) {

@@ -78,7 +78,7 @@ struct QpResult {
   double objective = 0.0;      ///< 1/2 x'Hx + g'x + slack terms
   double kkt_residual = 0.0;   ///< see kkt_residual(); infinite unless status is `solved`
   int iterations = 0;          ///< of the back end, all rounds together
-  bool certified = false;      ///< `solved` with a residual that lets it stand, see QpSolver
+  bool certified = false;      ///< `solved`, with a residual small enough for a certificate, see QpSolver
   bool from_ipopt = false;     ///< the fast method gave no certified answer; this one is Ipopt's
 
   /// All zero, of the shape of `structure`.
@@ -90,7 +90,7 @@ struct SlackRun {
   Eigen::Index first, count;
   int slack;  ///< -1: none
 };
-/// All rows, in their order, in runs as long as they can be.
+/// Divides all rows, in their order, into runs that are as long as possible.
 std::vector<SlackRun> slack_runs(const QpStructure& structure);
 
 /// Objective of (x, s).
@@ -103,21 +103,21 @@ double objective(const QpStructure& structure, const QpData& data, const QpResul
 /// finite.
 double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result);
 
-/// Memory of an objective and a residual that are computed again and again.
+/// Memory for an objective and a residual that are computed again and again.
 struct KktWorkspace {
   explicit KktWorkspace(const QpStructure& structure);
 
   std::shared_ptr<const LaneProgram> lanes;
   bool own_slacks;                  ///< every row has a slack of its own, in the order of the rows
-  std::vector<SlackRun> runs;       ///< without own slacks
+  std::vector<SlackRun> runs;       ///< if not own_slacks
   LaneVector row_value;             ///< m
   Eigen::VectorXd row_dual;         ///< m
-  Eigen::VectorXd row_slack, pull;  ///< without own slacks: the slack of each row, m, and what pushes it, q
+  Eigen::VectorXd row_slack, pull;  ///< if not own_slacks: the slack of each row, m, and what pushes it, q
   std::vector<int> pushing;         ///< rows with a multiplier
-  LaneVector stationarity;          ///< n; Hx of an objective
+  LaneVector stationarity;          ///< n; for the objective, Hx
 };
 
-/// The same two, with memory that the caller keeps: they allocate nothing.
+/// The same two functions, with memory that the caller keeps: they allocate nothing.
 double objective(const QpStructure& structure, const QpData& data, const QpResult& result,
                  KktWorkspace& workspace);
 double kkt_residual(const QpStructure& structure, const QpData& data, const QpResult& result,

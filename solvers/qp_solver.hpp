@@ -23,9 +23,9 @@ inline constexpr double kAnswerRounding = 0x1p-47;
 
 /// Solves a sequence of quadratic programs that share one structure, each warm-started from the one before.
 ///
-/// The public `solve` checks its input and certifies the answer: one with a KKT residual above
-/// kSolvedKktResidual is a `numerical_error`, whatever the back end says. `certified` is one with a residual
-/// of at most kCertifiedKktResidual or of kAnswerRounding times the largest number of x and A x: with
+/// The public `solve` checks its input and certifies the answer. An answer with a KKT residual above
+/// kSolvedKktResidual is a `numerical_error`, whatever the back end says. An answer is `certified` if its
+/// residual is at most kCertifiedKktResidual, or kAnswerRounding times the largest number of x and A x: with
 /// doubles, an answer of 1e7, as in a loop that runs away, cannot come nearer to its limits. Back ends
 /// implement `do_solve` only. A solver belongs to one controller and is not shared between threads.
 class QpSolver {
@@ -40,13 +40,13 @@ class QpSolver {
   /// status; bad input (see QpData::validate) throws InputError. Allocates nothing of its own.
   const QpResult& solve(const QpData& data);
 
-  /// The same, from the guess `x` (n) and not from the last answer. A back end that starts from a set of
-  /// active limits rather than a point ignores it.
+  /// The same, starting from the guess `x` (n) and not from the last answer. A back end that starts from a
+  /// set of active limits and not from a point ignores `x`.
   const QpResult& solve_from(const QpData& data, const Eigen::Ref<const Eigen::VectorXd>& x);
 
-  /// Processor seconds that Ipopt may take for one problem from now on, all of its runs together; a problem
-  /// that needs more has the status `time_limit`. Infinite at first. The active-set method has a limit of its
-  /// steps and ignores this one.
+  /// Sets the processor seconds that Ipopt may take for one problem from now on, all of its runs together; a
+  /// problem that needs more has the status `time_limit`. Infinite at first. The active-set method limits its
+  /// steps instead and ignores this limit.
   void set_time_limit(double seconds) { time_limit_ = seconds; }
 
   /// Forgets the warm start, so that the next answer depends on its problem alone.
@@ -61,20 +61,20 @@ class QpSolver {
   double time_limit() const { return time_limit_; }
   /// The structure for the kernels.
   const std::shared_ptr<const LaneProgram>& lanes() const { return workspace_->lanes; }
-  /// True when the KKT residual of the answer is at most `limit`; it is then kept in `result`, which must no
-  /// longer be changed, and is not computed again.
+  /// True if the KKT residual of the answer is at most `limit`. The residual is then kept in `result`, which
+  /// must no longer be changed, and is not computed again.
   bool has_residual_below(double limit, const QpData& data, QpResult& result);
 
  private:
   /// Fills status, x, slack, multipliers and iterations of `result`, which holds the previous answer without
   /// its residual.
   virtual void do_solve(const QpData& data, QpResult& result) = 0;
-  /// Fills objective and KKT residual of `result` from its x, slack and multipliers, withdraws `solved` where
-  /// the residual is too large, and says whether the answer is certified. A back end that passes on the
-  /// answers of other solvers, which have filled these, leaves them as they are.
+  /// Fills objective and KKT residual of `result` from its x, slack and multipliers, withdraws `solved` if
+  /// the residual is too large, and sets whether the answer is certified. A back end that passes on the
+  /// answers of other solvers, which have filled these members, leaves them as they are.
   virtual void certify(const QpData& data, QpResult& result);
   virtual void do_reset() = 0;
-  /// Up to which residual this answer, which has one, is certified.
+  /// The largest residual with which this answer is certified; its own residual must be known.
   double largest_certified_residual(const QpResult& result) const;
 
   std::shared_ptr<const QpStructure> structure_;
@@ -83,8 +83,8 @@ class QpSolver {
   double time_limit_ = kInfinity;
 };
 
-/// A problem as a controller met it, and the answer it got. The parts belong to the controller and stay valid
-/// until its next step.
+/// A problem that a controller had, and its answer. The parts belong to the controller and stay valid until
+/// its next step.
 struct SolvedQp {
   const QpStructure& structure;
   const QpData& data;

@@ -7,7 +7,7 @@
 namespace mpm {
 namespace {
 
-/// Which slacks can be eliminated with the limit they belong to.
+/// Tells which rows have a slack that can be eliminated with its limit.
 std::vector<bool> rows_with_own_slack(const QpStructure& structure) {
   std::vector<int> users(static_cast<std::size_t>(structure.slack_count()), 0);
   for (const int q : structure.slack_of_row)

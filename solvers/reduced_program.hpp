@@ -20,19 +20,19 @@ struct MatrixEntry {
 ///     minimise    1/2 z'Qz + c'z     over z = (x, e)
 ///     subject to  lower <= z <= upper,   constraint_lower <= Cz <= constraint_upper
 ///
-/// A soft limit whose slack belongs to one row alone and has quadratic cost w only needs neither its slack
-/// nor a constraint. With its surplus p >= 0, the distance by which the limit is kept, the slack is
+/// A soft limit needs neither its slack nor a constraint if the slack belongs to one row alone and has only a
+/// quadratic cost w. With its surplus p >= 0, the distance by which the limit is kept, the slack is
 ///     s = soft_lower - a x + p      or      s = a x - soft_upper + p,
 /// and w s^2 goes into the objective. A row may have both limits: their slacks are never positive at once, so
-/// that each may have its own. The sign of s needs no limit: it is 2ws = multiplier of p >= 0 at the
-/// minimiser. For the range MPC with a slack per CV and sample that leaves a problem with limits of variables
-/// only, with 45 + (working rows) unknowns and no constraint, where slacks and constraints would make it
-/// three times as large. Every other slack is a variable, and its limits and the hard limits are constraints.
+/// that each may have its own. No limit s >= 0 is needed: at the minimiser 2ws is the multiplier of p >= 0.
+/// For the range MPC with a slack per CV and sample this leaves a problem with limits of variables only, with
+/// 45 + (working rows) unknowns and no constraint; slacks and constraints would make it three times as large.
+/// Every other slack is a variable, and its limits and the hard limits are constraints.
 class ReducedProgram {
  public:
   explicit ReducedProgram(const QpStructure& structure);
 
-  /// The program of `data` over `set`; starts from the (x, slack, multipliers) in `start`.
+  /// Writes the program of `data` over `set`; it starts from the (x, slack, multipliers) in `start`.
   void assemble(const WorkingSet& set, const QpData& data, const QpResult& start);
 
   /// Translates a minimiser z, the multipliers of its limits (upper minus lower, >= 0 each) and those of the
@@ -61,8 +61,8 @@ class ReducedProgram {
 
   const QpStructure& structure_;
   std::vector<bool> own_slack_;    ///< of each row: quadratic cost only, and no other row uses it
-  std::vector<int> column_;        ///< of each working row: of its surplus, -1 where it has none
-  std::vector<int> slack_column_;  ///< of each slack of the working set, -1 where it is eliminated
+  std::vector<int> column_;        ///< of each working row: column of its surplus, -1 if it has none
+  std::vector<int> slack_column_;  ///< of each slack of the working set: its column, -1 if it is eliminated
   Eigen::MatrixXd hessian_of_x_;   ///< lower triangle
   std::vector<MatrixEntry> hessian_, constraints_;
   Eigen::VectorXd gradient_, lower_, upper_, constraint_lower_, constraint_upper_, start_;

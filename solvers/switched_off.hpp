@@ -22,9 +22,9 @@ struct SwitchedOff {
 
   bool has_mv(Eigen::Index mv) const { return !std::isnan(position(mv)); }
   bool has_any() const { return cvs.any() || !position.array().isNaN().all(); }
-  /// `u` (nu) with the MVs that are off where they are held.
+  /// Sets the MVs in `u` (nu) that are off to the positions where they are held.
   void hold(Eigen::Ref<Eigen::VectorXd> u) const;
-  /// `limits` of the CVs (ny) without those of CVs that are off.
+  /// Returns `limits` of the CVs (ny) without those of CVs that are off.
   Limits opened(Limits limits) const;
   /// Throws InputError for other sizes, and for an infinite position.
   void validate(Eigen::Index cv_count, Eigen::Index mv_count) const;

@@ -6,7 +6,7 @@
 namespace mpm {
 namespace {
 
-/// Of the objective without the penalty, within the limits of the MVs where they have any.
+/// Largest slope of the objective without the penalty, within the limits of the MVs if they have any.
 double largest_slope(const MpcOptions& options) {
   double largest = options.mv_cost.lpNorm<Eigen::Infinity>();
   for (Eigen::Index j = 0; options.has_resting_values() && j < options.resting_weight.size(); ++j)

@@ -30,18 +30,19 @@ namespace mpm {
 /// | u_tgt  | MV targets                 | nu      | MV      |
 class TargetOptimizer {
  public:
-  /// Uses mv_hard, cv_soft, mv_cost and target_violation_cost of `options`, which must be valid.
+  /// Uses mv_hard, cv_soft, mv_cost, target_violation_cost and the resting values of `options`, which must be
+  /// valid.
   TargetOptimizer(const Eigen::MatrixXd& static_gain, const MpcOptions& options,
                   const QpSolverFactory& factory);
 
-  /// The targets for the steady state `y_at_zero` (ny) of the CVs at zero MVs. The reference stays valid
-  /// until the next call: result.x are the targets, result.slack the violations.
+  /// Finds the targets for the steady state `y_at_zero` (ny) of the CVs at zero MVs. The reference stays
+  /// valid until the next call: result.x are the targets, result.slack the violations.
   const QpResult& solve(const Eigen::Ref<const Eigen::VectorXd>& y_at_zero);
 
   /// Replaces the soft limits of the CVs (ny each).
   void set_cv_soft(const Limits& limits) { cv_soft_ = limits; }
 
-  /// Targets that are given: `position` (nu), NaN where the limits of the MV count.
+  /// Fixes targets at `position` (nu); NaN where the limits of the MV hold.
   void set_held(const Eigen::Ref<const Eigen::VectorXd>& position);
 
   void reset() { solver_->reset(); }

@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-// Each in a source of its own, which is compiled for it.
+// Each set is in a source of its own, which is compiled for its instructions.
 extern const LaneKernels kBaselineKernels;
 #ifdef MPMBENCH_X86_KERNELS
 extern const LaneKernels kAvx2Kernels;

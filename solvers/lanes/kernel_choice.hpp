@@ -10,7 +10,7 @@ namespace mpm {
 /// MPMBENCH_KERNELS names. Throws InputError when it names none of them.
 const LaneKernels& lane_kernels();
 
-/// Those that this processor can run, the fastest last.
+/// The sets of kernels that this processor can run, the fastest last.
 std::vector<const LaneKernels*> lane_kernel_sets();
 
 }  // namespace mpm

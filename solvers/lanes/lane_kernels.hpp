@@ -2,8 +2,8 @@
 
 namespace mpm {
 
-/// A column of the rows as the kernels see them, or two: the eight numbers of a block in the column `partner`
-/// are those that the block before has, or would have, in `column`.
+/// One or two columns of the rows, as the kernels see them. The eight numbers of a block in the column
+/// `partner` are those that the block before it has, or would have, in `column`.
 struct RowTap {
   long offset;
   int column;
@@ -16,7 +16,7 @@ struct RowTap {
 struct RowWindows {
   const double* numbers;
   const RowTap* taps;
-  long pair_count;  ///< taps that have a partner: the first ones
+  long pair_count;  ///< number of taps that have a partner; they come first
   long tap_count;
   long blocks;
   const long* starts;
@@ -50,16 +50,16 @@ struct SlackArrays {
 /// eight numbers side by side in an order that is the same for every instruction set, without fused
 /// operations: the bits of the result do not depend on the processor.
 ///
-/// All pointers but those of LimitArrays, SlackArrays, RowWindows, `below_zero` and `non_zero`, and where A x
-/// goes, are multiples of 64 bytes, strides multiples of 8, and what is padded is zero where nothing else is
-/// said (LaneVector). A matrix with a `stride` has its columns (rows, in `rows`) that far apart.
+/// All pointers are multiples of 64 bytes, but for those of LimitArrays, SlackArrays, RowWindows,
+/// `below_zero` and `non_zero`, and the `out` of A x. Strides are multiples of 8. Padding is zero unless
+/// stated otherwise (LaneVector). A matrix with a `stride` has its columns (rows, in `rows`) that far apart.
 struct LaneKernels {
   const char* name;  ///< "baseline", "avx2", "avx512"
   bool (*runs_here)();
 
   /// out = A x in the existing rows.
   void (*multiply)(const RowWindows& rows, const double* x, double* out);
-  /// out = A x, for the blocks of eight rows, a block column by column, whose columns are those of the listed
+  /// out = A x, for blocks of eight rows, each stored column by column; its columns belong to the listed
   /// numbers of x.
   void (*multiply_some)(const double* blocks, const int* list, long columns, long block_count,
                         const double* x, double* out);
@@ -74,13 +74,13 @@ struct LaneKernels {
                     double* scratch, double* matrix, long matrix_stride);
   static constexpr long kOuterRows = 32;
 
-  /// S = L L' from the lower triangle of S, of `size` rows, a multiple of 8. L is written below its diagonal,
-  /// zero elsewhere in the blocks on it, whose inverses go to `inverse` (see invert). False when a pivot is
-  /// not above `smallest` times its diagonal in S.
+  /// S = L L' from the lower triangle of S, of `size` rows, a multiple of 8. L is written below its diagonal;
+  /// the other numbers of the blocks on the diagonal are zero, and the inverses of these blocks go to
+  /// `inverse` (see invert). Returns false if a pivot is not above `smallest` times its diagonal in S.
   bool (*factor)(const double* matrix, long stride, long size, double smallest, double* lower,
                  double* inverse);
-  /// The inverse of each block of eight on the diagonal of L, column by column and then row by row,
-  /// kInverse * size numbers in all. `reciprocal`: of the diagonal of L.
+  /// The inverse of each block of eight on the diagonal of L, column by column and then again row by row,
+  /// kInverse * size numbers in all. `reciprocal`: reciprocals of the diagonal of L.
   void (*invert)(const double* lower, long stride, long size, const double* reciprocal, double* inverse);
   static constexpr long kInverse = 16;
   /// inv(L) x and inv(L') x in place, for `size` numbers.
@@ -89,12 +89,12 @@ struct LaneKernels {
 
   double (*dot)(const double* a, const double* b, long size);  ///< `size` a multiple of 8
 
-  /// Eight filters side by side, B/(1 + a_1 q^-1 + ...): eight numbers a sample and eight a coefficient, of
-  /// which denominators[0..7] are not read. `nb` - 1 samples before x and `na` before y are read.
+  /// Eight filters side by side, B/(1 + a_1 q^-1 + ...), with eight numbers for each sample and for each
+  /// coefficient; denominators[0..7] are not read. `nb` - 1 samples before x and `na` before y are read.
   void (*filter_eight)(const double* numerators, long nb, const double* denominators, long na,
                        const double* x, long samples, double* y);
-  /// From rest, of eight signals x at once: x/F1, path = B x/F1, and out = B x/(F1 F2), without `second`
-  /// out = x/F1. Polynomials of `order` + 1 coefficients, `order` from 1 to kPathOrder.
+  /// Filters eight signals x at once, from rest: x/F1, path = B x/F1, and out = B x/(F1 F2) or, without
+  /// `second`, out = x/F1. Polynomials of `order` + 1 coefficients, `order` from 1 to kPathOrder.
   void (*filter_paths)(const double* first, const double* numerators, const double* second, long order,
                        const double* x, long samples, double* path, double* out);
   static constexpr long kPathOrder = 8;
@@ -102,36 +102,36 @@ struct LaneKernels {
   /// l < `lags`: the products of eight signals with each of some signals before. `lags` - 1 samples before b
   /// are read.
   void (*lag_products)(const double* a, const double* b, long samples, long signals, long lags, double* sums);
-  /// sums[8 l + i] = sum over k of a[8 k + i] b[8 (k - l) + i]; b is any address.
+  /// sums[8 l + i] = sum over k of a[8 k + i] b[8 (k - l) + i]; b may be at any address.
   void (*lane_products)(const double* a, const double* b, long samples, long lags, double* sums);
 
   /// y(k) = sum over l < `nh` of h(l) x(k - l), in that order, for `samples` samples, a multiple of 8. h and
-  /// x are any addresses; x is zero, and read, up to kConvolutionBefore samples before its first.
+  /// x may be at any addresses; x is zero, and read, up to kConvolutionBefore samples before its first.
   void (*convolve)(const double* h, long nh, const double* x, long samples, double* y);
   static constexpr long kConvolutionBefore = 32;
 
   void (*pull)(const SpringArrays& springs);            ///< LimitSprings::pull
   void (*pull_stretched)(const SpringArrays& springs);  ///< LimitSprings::pull_stretched
-  void (*pull_within)(const SpringArrays& springs);     ///< by the step that led to v, no spring changes
+  void (*pull_within)(const SpringArrays& springs);     ///< after a step to v on which no spring changes
   long (*find_changing)(const SpringArrays& springs, int* rows);  ///< LimitSprings::find_changing
   double (*curvature)(const SpringArrays& springs);               ///< of the stretched springs along `step`
 
-  /// The largest distance of a value beyond its limits, and 0 at least.
+  /// The largest distance of a value beyond its limits, at least 0.
   double (*violation)(const LimitArrays& limits);
   /// The first row whose value is furthest beyond its limits, if that is more than `most`, which is then
   /// updated; -1 when there is none.
   long (*most_violated)(const LimitArrays& limits, double* most);
-  /// The largest |dual| times distance to its limit, the upper one of a positive and the lower one of a
-  /// negative dual. At an absent limit nothing may push: |dual|.
+  /// The largest |dual| times distance to its limit: the upper limit of a positive, the lower one of a
+  /// negative dual. Nothing may push at an absent limit: there it is |dual|.
   double (*complementarity)(const LimitArrays& limits);
   /// True when lower <= upper, lower < inf and upper > -inf everywhere; false with a NaN.
   bool (*ordered)(const double* lower, const double* upper, long count);
   bool (*finite)(const double* values, long count);        ///< no NaN and no infinity
-  double (*below_zero)(const double* values, long count);  ///< the largest -value, and 0 at least
+  double (*below_zero)(const double* values, long count);  ///< the largest -value, at least 0
   /// The places of the numbers that are not zero, in order, and their count.
   long (*non_zero)(const double* values, long count, int* places);
-  /// The multiplier of s >= 0 is 2 q s + c - |pull|: how far one is below zero, or |multiplier s|, the
-  /// largest.
+  /// The multiplier of s >= 0 is 2 q s + c - |pull|. Returns the largest of two errors: how far a multiplier
+  /// is below zero, and |multiplier s|.
   double (*slack_residual)(const SlackArrays& slacks);
   double (*slack_cost)(const SlackArrays& slacks);  ///< sum of s (q s + c)
 };

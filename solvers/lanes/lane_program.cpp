@@ -16,8 +16,8 @@ Eigen::Index widest(const std::vector<RowBand>& bands) {
   return width;
 }
 
-/// Calls visit(band, first of the listed rows within it, how many) for bands that have some; the list is in
-/// increasing order.
+/// Calls visit(band, first of the listed rows within it, number of these rows) for each band that has listed
+/// rows; the list is in increasing order.
 template <class Visit>
 void visit_bands(const std::vector<RowBand>& bands, const std::vector<int>& list, const Visit& visit) {
   auto next = list.begin();

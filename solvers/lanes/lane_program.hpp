@@ -13,12 +13,12 @@
 
 namespace mpm {
 
-/// Hessian H (n x n) and rows A (m x n) of a program for the kernels. All sizes and vectors without padding
-/// have at least the length that the shape says; `out` is followed by room for a multiple of eight.
+/// Hessian H (n x n) and rows A (m x n) of a program for the kernels. Sizes and vectors without padding have
+/// at least the length that the shape says; `out` has room for a multiple of eight.
 ///
-/// Where rows that follow each other have few columns that are not zero, and the same ones (those of a CV
-/// that answers to some of the MVs only), only these columns are kept and used. The products left out are
-/// zero: the results are the same to the bit (except for the sign of a zero).
+/// If successive rows have few columns that are not zero, and the same ones (those of a CV that answers to
+/// some of the MVs only), only these columns are kept and used. The products left out are zero: the results
+/// are the same to the bit (except for the sign of a zero).
 class LaneProgram {
  public:
   LaneProgram(const Eigen::MatrixXd& hessian, const RowMajorMatrix& rows);
@@ -45,9 +45,9 @@ class LaneProgram {
 
   LaneMatrix hessian_;
   std::vector<RowBand> bands_;
-  LaneMatrix rows_;  ///< columns: the rows of A, of each the columns of its band
-  /// For the product with the rows: all of them when nothing is left out, otherwise the rows of each band in
-  /// groups of eight, a group column by column, and where each band begins.
+  LaneMatrix rows_;  ///< each column is a row of A, with the columns of its band only
+  /// For the product with the rows: all rows if nothing is left out; otherwise the rows of each band in
+  /// groups of eight, each group column by column, and where each band begins.
   std::optional<RowBlocks> dense_;
   LaneMemory blocks_;
   std::vector<std::size_t> begin_;

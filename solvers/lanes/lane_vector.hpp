@@ -33,7 +33,7 @@ inline Eigen::Index padded(Eigen::Index size) {
   return (size + 7) / 8 * 8;
 }
 
-/// A vector of `size` numbers for the kernels: followed by zeros up to a multiple of eight.
+/// A vector of `size` numbers for the kernels, followed by zeros up to a multiple of eight.
 class LaneVector {
  public:
   LaneVector() = default;
@@ -56,11 +56,11 @@ class LaneVector {
   LaneMemory memory_;
 };
 
-/// A matrix by columns for the kernels: each is followed by zeros up to `stride` numbers, a multiple of
-/// eight.
+/// A matrix by columns for the kernels: each column is followed by zeros up to `stride` numbers, a multiple
+/// of eight.
 class LaneMatrix {
  public:
-  /// Zero.
+  /// A matrix of zeros.
   LaneMatrix(Eigen::Index rows, Eigen::Index columns)
       : stride_(padded(rows)), columns_(columns), memory_(static_cast<std::size_t>(stride_ * columns), 0.0) {}
 

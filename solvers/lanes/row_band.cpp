@@ -7,11 +7,11 @@
 namespace mpm {
 namespace {
 
-// Of all numbers, those that bands may keep: with more of them, gathering costs what is saved.
+// Share of all numbers that bands may keep: if they keep more, gathering costs more than it saves.
 constexpr double kWorthwhile = 0.6;
 
-// A band goes on as long as its columns are among those of the next row or the other way round: of a CV the
-// later rows answer to all moves, the first ones to some.
+// A band goes on as long as its columns include those of the next row or the other way round: the later rows
+// of a CV answer to all moves, the first ones to some.
 void add_row(std::vector<RowBand>& bands, Eigen::Index row, std::vector<int> columns) {
   if (!bands.empty()) {
     RowBand& last = bands.back();

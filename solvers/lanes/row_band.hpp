@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// Rows first .. first + count - 1 of a matrix, and the columns that are not zero in all of them, in
+/// Rows first .. first + count - 1 of a matrix, and the columns in which some of them are not zero, in
 /// increasing order: those of a CV that answers to some of the MVs only.
 struct RowBand {
   Eigen::Index first, count;
@@ -19,11 +19,11 @@ struct RowBand {
   Eigen::Index width() const { return static_cast<Eigen::Index>(columns.size()); }
 };
 
-/// The most columns of a band that is not the whole matrix.
+/// Most columns of a band, unless the band is the whole matrix.
 inline constexpr std::size_t kWidestBand = 512;
 
-/// The rows of a matrix as bands, in their order; as a single one with all columns where that is hardly more
-/// work.
+/// Divides the rows of a matrix into bands, in their order. Returns a single band with all columns if that is
+/// hardly more work.
 std::vector<RowBand> row_bands(const RowMajorMatrix& rows);
 
 }  // namespace mpm

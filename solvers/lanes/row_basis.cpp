@@ -5,7 +5,7 @@
 namespace mpm {
 namespace {
 
-// What is left of a row counts as rounding up to this share of the longest row: some times that of a sum.
+// The remainder of a row counts as rounding up to this share of the longest row: some times that of a sum.
 constexpr double kRowRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace

@@ -13,13 +13,13 @@ namespace mpm {
 /// of 64.
 using RowBits = std::vector<unsigned char>;
 
-/// No row of `row_count`.
+/// The empty set of `row_count` rows.
 inline RowBits empty_rows(Eigen::Index row_count) {
   return RowBits(static_cast<std::size_t>((row_count + 63) / 64 * 8), 0);
 }
 
-/// Calls visit(byte, bits) for what is in one of two sets of the same length and not in the other, wherever
-/// there is something in eight bytes.
+/// Calls visit(byte, bits) with the rows that are in only one of two sets of the same length. Skips groups of
+/// eight bytes in which the sets are equal.
 template <class Visit>
 void visit_bytes(const RowBits& a, const RowBits& b, const Visit& visit) {
   for (std::size_t first = 0; first < a.size(); first += 8) {
@@ -33,7 +33,7 @@ void visit_bytes(const RowBits& a, const RowBits& b, const Visit& visit) {
   }
 }
 
-/// Calls visit(row), in increasing order, for the rows that are in one of the sets only.
+/// Calls visit(row), in increasing order, for the rows that are in only one of the sets.
 template <class Visit>
 void visit_differences(const RowBits& a, const RowBits& b, const Visit& visit) {
   visit_bytes(a, b, [&](std::size_t e, unsigned bits) {
@@ -42,7 +42,7 @@ void visit_differences(const RowBits& a, const RowBits& b, const Visit& visit) {
   });
 }
 
-/// How many rows are in one of the sets only.
+/// Counts the rows that are in only one of the sets.
 inline std::size_t count_differences(const RowBits& a, const RowBits& b) {
   std::size_t count = 0;
   visit_bytes(a, b,

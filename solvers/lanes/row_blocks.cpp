@@ -33,7 +33,7 @@ Eigen::Index blocks_of(Eigen::Index rows) {
 
 }  // namespace
 
-// Rows that there are not are zero.
+// Rows beyond the last one are zero.
 RowBlocks::Blocks RowBlocks::make_blocks(const RowMajorMatrix& rows, Eigen::Index first, Eigen::Index last,
                                          std::vector<int> columns) {
   Blocks blocks{first, std::move(columns), blocks_of(last - first)};
@@ -49,7 +49,7 @@ void RowBlocks::Blocks::multiply(const double* x, double* out) const {
                                out + first);
 }
 
-// Those that are as long as the windows, which end with the moves.
+// Finds the runs that are at least as long as the windows, which end with the moves.
 std::vector<RowBlocks::Run> RowBlocks::find_runs(const RowMajorMatrix& rows, Eigen::Index period) {
   std::vector<Run> runs;
   for (Eigen::Index i = 0; i < rows.rows(); ++i)
@@ -61,8 +61,8 @@ std::vector<RowBlocks::Run> RowBlocks::find_runs(const RowMajorMatrix& rows, Eig
   return runs;
 }
 
-// The period with the most rows in runs; 0 when there is none. With fewer than four groups of columns nothing
-// is gained.
+// Finds the period with the most rows in runs; 0 if there is none. With fewer than four groups of columns
+// nothing is gained.
 Eigen::Index RowBlocks::find_period(const RowMajorMatrix& rows) {
   Eigen::Index best = 0;
   Eigen::Index most = 0;
@@ -93,7 +93,7 @@ RowBlocks::RowBlocks(const RowMajorMatrix& rows) {
   add_late(rows, runs);
 }
 
-// The window of move i + 8 in a block is that of move i in the block before: such pairs share it.
+// In a block, the window of move i + 8 is that of move i in the block before. Such pairs share it.
 void RowBlocks::add_taps(Eigen::Index period, Eigen::Index moves, Eigen::Index length) {
   std::vector<RowTap> single;
   for (Eigen::Index j = 0; j < period; ++j) {
@@ -114,7 +114,7 @@ void RowBlocks::add_taps(Eigen::Index period, Eigen::Index moves, Eigen::Index l
   taps_.insert(taps_.end(), single.begin(), single.end());
 }
 
-// A series of a run is as long as its blocks and the number of its columns ask for; number t of it, which
+// A series of a run is as long as its blocks and its number of columns require. Number t of the series, which
 // stands at t + moves - 1, is what the column of the first move has in row t of the run.
 void RowBlocks::add_windows(const RowMajorMatrix& rows, Eigen::Index period, const std::vector<Run>& runs) {
   const Eigen::Index moves = rows.cols() / period - 1;
@@ -140,8 +140,8 @@ void RowBlocks::add_windows(const RowMajorMatrix& rows, Eigen::Index period, con
   }
 }
 
-// Rows that are in no run, in blocks that begin at multiples of eight; rows of runs that are among them are
-// written again by those.
+// Rows that are in no run, in blocks that begin at multiples of eight. If a block includes rows of a run, the
+// run writes these again.
 void RowBlocks::add_whole(const RowMajorMatrix& rows, const std::vector<Run>& runs) {
   Eigen::Index first = 0;
   for (const Run& run : runs) {
@@ -153,8 +153,8 @@ void RowBlocks::add_whole(const RowMajorMatrix& rows, const std::vector<Run>& ru
     whole_.push_back(make_blocks(rows, first / kBlock * kBlock, rows.rows(), order_));
 }
 
-// The rows of the runs behind their windows, in blocks that reach back from the end of the run: as P and Q
-// where that is less work, else as they are.
+// The rows of the runs after their windows, in blocks that reach back from the end of the run: as P and Q if
+// that is less work, otherwise as they are.
 void RowBlocks::add_late(const RowMajorMatrix& rows, const std::vector<Run>& runs) {
   RowMajorMatrix all(0, rows.cols());
   for (const Run& run : runs) {
@@ -191,7 +191,7 @@ std::size_t RowBlocks::number_count() const {
   return count;
 }
 
-// What is written twice, at the ends of blocks, is right by the last.
+// The ends of blocks may be written twice; the value that is written last is right.
 void RowBlocks::multiply(const double* x, LaneVector& out) const {
   for (const Blocks& blocks : whole_)
     blocks.multiply(x, out.data());

@@ -18,13 +18,14 @@ namespace mpm {
 ///
 ///     A(l + 1, j + p) = A(l, j)
 ///
-/// in all columns but the last p, whose moves do not end with the horizon. Where that holds to the bit, only
-/// one series of numbers is kept for each of the first and of the last p columns of a run, and the columns of
-/// a block are windows of them: a few kilobytes, which stay in the nearest cache, instead of all of A.
+/// in all columns but the last p, whose moves are held to the end of the horizon. If that holds to the bit,
+/// only one series of numbers is kept for each of the first and of the last p columns of a run, and the
+/// columns of a block are windows of these series: a few kilobytes, which stay in the nearest cache, instead
+/// of all of A.
 ///
-/// After the last move a CV is on its own: the rows of a run from there on are the free response of a model
-/// of low order, and hence combinations of a few rows Q, A = P Q with P = A Q' (row_basis). Where that is
-/// less work, they are kept as P and Q, and their product is P (Q x), whose rounding is that of A x.
+/// After the last move a CV is on its own: from there on, the rows of a run are the free response of a model
+/// of low order, and hence combinations of a few rows Q, A = P Q with P = A Q' (row_basis). If that is less
+/// work, they are kept as P and Q, and their product is P (Q x), whose rounding is that of A x.
 class RowBlocks {
  public:
   explicit RowBlocks(const RowMajorMatrix& rows);
@@ -35,14 +36,14 @@ class RowBlocks {
   /// The columns in the order in which their products are added, the same in all rows but those of P.
   const std::vector<int>& column_order() const { return order_; }
 
-  /// Rows that are kept as P, blocks of eight.
+  /// Number of rows that are kept as P, in blocks of eight.
   Eigen::Index late_row_count() const;
 
   /// Numbers that are kept for A.
   std::size_t number_count() const;
 
  private:
-  /// Rows first to last - 1, each of which is the one before moved by a period.
+  /// Rows first to last - 1; each is the row before it, moved by a period.
   struct Run {
     Eigen::Index first, last;
   };
@@ -69,12 +70,12 @@ class RowBlocks {
   LaneMemory numbers_;  ///< series
   std::vector<RowTap> taps_;
   long pairs_ = 0;
-  Eigen::Index window_blocks_ = 0;  ///< of every run: its first ones
+  Eigen::Index window_blocks_ = 0;  ///< first blocks of every run, which are windows
   std::vector<long> starts_, window_rows_;
 
-  std::vector<Blocks> whole_;  ///< times x
+  std::vector<Blocks> whole_;  ///< blocks to be multiplied by x
   Blocks basis_;               ///< Q of all runs, one below the other
-  std::vector<Blocks> late_;   ///< P of each, times its part of Q x
+  std::vector<Blocks> late_;   ///< P of each run, to be multiplied by its part of Q x
 };
 
 }  // namespace mpm
