@@ -23,8 +23,7 @@ constexpr double kInfeasible = 1e-9;
 // rounds, `kAcceptable` times the tolerance is enough.
 constexpr int kPatience = 12;
 constexpr double kAcceptable = 5.0;
-constexpr double kProgress =
-    0.1;  // of the residual in one round of multipliers; else the springs are stiffened
+constexpr double kProgress = 0.1;  // share of the residual left by a round; above it, springs are stiffened
 constexpr double kStiffer = 16.0;  // a power of two: taking it back is exact
 constexpr double kStiffest = 0x1p20;
 

@@ -20,8 +20,8 @@ bool is_certified(const QpResult& result);
 /// solve them: up to the first of them the answers are the same, bit for bit.
 class CertifiedSolver final : public QpSolver {
  public:
-  /// Asks Ipopt, or adds 1 to `left_to_others`, which must outlive it, for each problem that needs it. Throws
-  /// InputError when the structure is not valid.
+  /// For each problem that needs Ipopt, asks it or, if `left_to_others` is given, adds 1 to that number,
+  /// which must outlive this object. Throws InputError when the structure is not valid.
   explicit CertifiedSolver(std::shared_ptr<const QpStructure> structure,
                            std::int64_t* left_to_others = nullptr);
   ~CertifiedSolver() override;

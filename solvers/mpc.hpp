@@ -90,7 +90,7 @@ class Mpc final : public Controller {
   std::map<std::vector<bool>, Program> programs_;  ///< by the CVs with a setpoint that are off
   Program* program_ = nullptr;
   std::optional<TargetOptimizer> targets_;
-  Eigen::VectorXd input_;  ///< (u(k-1), d(k)), then what acts, (u(k), d(k))
+  Eigen::VectorXd input_;  ///< (u(k-1), d(k)), and after the move what acts, (u(k), d(k))
   AnalyserHold simulated_analysers_;
   bool is_pending_ = false;  ///< input_ acts, and the model has not been advanced with it
   bool has_bias_ = false;    ///< since reset()

@@ -60,7 +60,7 @@ void ReducedProgram::number_unknowns(const WorkingSet& set) {
       column = columns++;
   }
   gradient_.setZero(columns);
-  lower_.setZero(columns);  // of surpluses and slacks; those of x follow
+  lower_.setZero(columns);  // for surpluses and slacks; the limits of x follow
   upper_.setConstant(columns, kInfinity);
   start_.setZero(columns);
   constraint_lower_.setConstant(constraint_count, -kInfinity);

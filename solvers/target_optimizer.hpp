@@ -15,13 +15,13 @@ namespace mpm {
 ///     subject to  mv_hard.lower <= u_tgt <= mv_hard.upper
 ///                 cv_soft.lower - v <= y_0 + K u_tgt <= cv_soft.upper + v
 ///
-/// where K is the static gain of the nominal model and y_0 what the CVs would settle at with the MVs at zero.
-/// A CV that integrates enters with its rate, whose limits are 0 (Mpc).
-/// The thesis gives no answer for limits that no target satisfies. Here the violation v has the price
-/// rho = target_violation_cost * the largest slope of the objective within the limits, max|phi_u| without
-/// resting values: an exact penalty, so that limits which can be kept are kept (v = 0, the answer is that of
-/// (6.19)), and otherwise the sum of the violations is made small first. The resting values r_u of industrial
-/// controllers, with weights w_u, are not in the thesis; there are none by default.
+/// where K is the static gain of the nominal model and y_0 the steady state of the CVs with the MVs at zero.
+/// A CV that integrates enters with its rate, whose limits are 0 (Mpc). The thesis gives no answer for limits
+/// that no target satisfies. Here the violation v has the price rho = target_violation_cost * the largest
+/// slope of the objective within the limits, max|phi_u| without resting values: an exact penalty. Limits that
+/// can be kept are kept (v = 0, the answer is that of (6.19)); otherwise the sum of the violations is made
+/// small first. The resting values r_u of industrial controllers, with weights w_u, are not in the thesis;
+/// there are none by default.
 ///
 /// | symbol | meaning                    | shape   | unit    |
 /// |--------|----------------------------|---------|---------|

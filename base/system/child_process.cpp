@@ -121,7 +121,7 @@ class SpawnFiles {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Tells whether resources are short that the start of any program needs.
+/// Tells whether the error is a lack of resources that the start of any program needs.
 bool is_shortage(int error) {
   return error == EAGAIN || error == ENOMEM || error == EMFILE || error == ENFILE;
 }

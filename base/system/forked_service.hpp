@@ -31,8 +31,8 @@ class ForkedService {
   ~ForkedService();
 
   /// Returns the answer. Errors: ForeignFailure with what the function threw, how its process ended, or that
-  /// the time was up; after the last two the process is gone, with all of its group. If the other end of the
-  /// socket `user`, for which the answer is, is gone, the process is ended at once as well.
+  /// the time was up; after the last two the process is gone, with all of its group. The process is
+  /// also ended at once if the other end of `user`, the socket for which the answer is meant, is gone.
   /// SurroundingsFailure if somebody has killed the process, or if the function threw a failure of the
   /// surroundings.
   std::vector<double> ask(const std::vector<double>& request, int user = -1);

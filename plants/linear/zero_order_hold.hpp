@@ -25,8 +25,8 @@ inline constexpr int kMaxDelay = 1'000'000;
 /// | b_previous | effect of the older one; 0 for whole delays  | n     | 1 / unit of u     |
 /// | c, d       | output row, direct effect                    | n, 1  | unit of y         |
 /// | delay      | whole samples of dead time                   | 1     | samples           |
-/// | step       | step response beside the states, which stays | m     | unit of y         |
-/// |            | at its last value; only with coefficients    |       |                   |
+/// | step       | step response beside the states; it stays at | m     | unit of y         |
+/// |            | its last value; only with coefficients       |       |                   |
 struct DiscreteChannel {
   Eigen::MatrixXd A;
   Eigen::VectorXd b_now;

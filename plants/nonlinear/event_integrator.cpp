@@ -37,7 +37,7 @@ class EventIntegrator::Implementation {
   std::vector<double> x_;  ///< at least one: if there are no states, CVODE gets one that stays at rest
   double next_event_ = 0.0;
   std::exception_ptr thrown_;
-  // In the order in which they depend on each other.
+  // Each of these depends on those before it.
   sundials::SunContext context_;
   sundials::SunVector vector_, tolerances_;
   sundials::SunMatrix matrix_;

@@ -86,7 +86,7 @@ class OdeIntegrator::Implementation {
   Eigen::VectorXd x, u;
   double time = 0.0;  // since the last start
   bool fresh = true;  // x was set since the last start
-  // In the order in which they depend on each other; x is the memory of `vector`.
+  // Each of these depends on those before it; x is the memory of `vector`.
   SunContext context;
   SunVector vector;
 };

@@ -26,7 +26,7 @@ struct FmuSteps {
 };
 
 /// The instance of an FMU in this process. Its code is somebody else's: it may crash, and it may leave behind
-/// what the next instance would find. It therefore belongs into a ForkedService. It ends only with the
+/// what the next instance would find. It therefore belongs in a ForkedService. It ends only with the
 /// process.
 ///
 /// Errors of all members: ForeignFailure that names the function of the interface, its status and the last

@@ -97,7 +97,7 @@ void write_entry(zip_t* zip, const zip_stat_t& entry, const fs::path& file, cons
     throw std::system_error(errno, std::generic_category(), path.string());
 }
 
-/// Refuses what the file claims before any of it is unpacked.
+/// Checks the sizes that the file claims before any of it is unpacked.
 void require_bounds(const zip_stat_t& entry, bool is_description, std::uint64_t bytes, const fs::path& file) {
   const std::uint64_t most = is_description ? kMostOfDescription : kMostBytes;
   if (entry.size > most || bytes > kMostBytes)

@@ -68,8 +68,8 @@ struct LaneKernels {
   /// out += sum over the listed rows i of factor_i a_i.
   void (*add_rows)(const double* rows, long stride, const int* list, long count, const double* factor,
                    double* out);
-  /// M += sum over the listed rows of weight_k a_k a_k' in the lower triangle; what is above it is arbitrary.
-  /// `scratch`: kOuterRows * stride numbers. The matrix has `matrix_stride` >= stride.
+  /// M += sum over the listed rows of weight_k a_k a_k' in the lower triangle; the numbers above it are
+  /// arbitrary. `scratch`: kOuterRows * stride numbers. The matrix has `matrix_stride` >= stride.
   void (*add_outer)(const double* rows, long stride, const int* list, long count, const double* weight,
                     double* scratch, double* matrix, long matrix_stride);
   static constexpr long kOuterRows = 32;

@@ -32,9 +32,9 @@ class LaneProgram {
   void add_hessian(const double* x, LaneVector& out) const;
   /// out += sum over the listed rows, in increasing order, of factor_i a_i.
   void add_rows(const std::vector<int>& list, const double* factor, LaneVector& out) const;
-  /// The lower triangle of `matrix` += sum over the listed rows, in increasing order, of weight_k a_k a_k';
-  /// what is above it in the first n rows and columns is arbitrary afterwards. `scratch`: outer_scratch()
-  /// numbers.
+  /// The lower triangle of `matrix` += sum over the listed rows, in increasing order, of weight_k a_k a_k'.
+  /// The numbers above it in the first n rows and columns are arbitrary afterwards. `scratch`:
+  /// outer_scratch() numbers.
   void add_outer(const std::vector<int>& list, const std::vector<double>& weight, LaneVector& scratch,
                  LaneMatrix& matrix) const;
   Eigen::Index outer_scratch() const;

@@ -13,8 +13,8 @@ namespace mpm {
 
 /// Rows A (m x n) in blocks of eight for the product A x.
 ///
-/// The rows of a prediction repeat themselves: what move i does to a controlled variable at sample l is what
-/// move 0 does at sample l - i. With p = number of MVs, in a run of rows (the samples of one CV),
+/// The rows of a prediction repeat themselves: move i has the effect on a controlled variable at sample l
+/// that move 0 has at sample l - i. With p = number of MVs, in a run of rows (the samples of one CV),
 ///
 ///     A(l + 1, j + p) = A(l, j)
 ///
