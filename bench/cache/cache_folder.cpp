@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kBytesInMegabyte = 1'000'000;
 constexpr std::uint64_t kDefaultMegabytes = 2000;
 constexpr std::string_view kKept = ".kept";
-constexpr std::size_t kDigits = 64;  // of a SHA-256
+constexpr std::size_t kDigits = 64;  // hexadecimal digits of a SHA-256
 
 struct KeptFile {
   fs::path path;
@@ -34,8 +34,8 @@ struct KeptFile {
   fs::file_time_type used;
 };
 
-/// The name in the cache to which a file belongs; none for a file that belongs to no cache. A file that was
-/// being written when its process was killed has a longer name of its own.
+/// The name of the cache file to which a file belongs; none if it belongs to no cache. A process that is
+/// killed while it writes leaves a file with a longer name that begins with this one.
 std::optional<std::string> name_in_cache(const fs::path& file) {
   const std::string name = file.filename().string();
   const std::string own = name.substr(0, kDigits + kKept.size());
@@ -43,7 +43,7 @@ std::optional<std::string> name_in_cache(const fs::path& file) {
   return is_ours ? std::optional(own) : std::nullopt;
 }
 
-/// The files of a cache; those that killed processes have left are removed.
+/// Returns the files of a cache, and removes those that killed processes have left half-written.
 std::vector<KeptFile> kept_files(const fs::path& folder) {
   std::vector<KeptFile> files;
   std::error_code error;  // another process may have removed the folder, or a file
@@ -101,7 +101,7 @@ std::optional<ShardContent> CacheFolder::read(const ShardIdentity& identity) con
     if (content)
       fs::last_write_time(file, fs::file_time_type::clock::now(), error);
     return content;
-  } catch (const std::exception& failure) {  // a whole file of something else, or one that has just gone
+  } catch (const std::exception& failure) {  // an intact file of another kind, or one that has just gone
     if (is_of_surroundings(failure))
       throw;
     return std::nullopt;
@@ -161,7 +161,7 @@ std::shared_ptr<const CacheFolder> user_cache() {
   fs::path folder = wanted;
   if (wanted.empty()) {
     const fs::path caches = environment_of("XDG_CACHE_HOME"), home = environment_of("HOME");
-    if (caches.is_absolute())  // as its specification has it, others do not count
+    if (caches.is_absolute())  // its specification ignores relative paths
       folder = caches / "mpmbench";
     else if (home.is_absolute())
       folder = home / ".cache" / "mpmbench";

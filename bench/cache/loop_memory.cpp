@@ -26,10 +26,11 @@
 namespace mpm {
 namespace {
 
-/// Loops of a campaign beyond so many bytes are not kept, because all that is kept is in memory.
+/// A campaign keeps no loops beyond this number of bytes, because it holds all kept loops in memory.
 constexpr std::size_t kMostHeld = std::size_t{256} << 20;
 
-/// What decides the last bits besides the program: libraries, processor, and their settings.
+/// A digest of what decides the last bits of a result besides the program: libraries, processor, and their
+/// settings.
 std::string this_machine() {
   std::string text = loaded_code();
   for (const char* const name :
@@ -71,7 +72,7 @@ std::string bytes_to_keep(const std::string& loop,
   return writer.take();
 }
 
-/// But for the time that it took.
+/// Whether two answers agree in everything but the time that they took.
 bool is_same_answer(const AssessmentRecord& one, const AssessmentRecord& other) {
   const auto bytes_of = [](AssessmentRecord answer) {
     answer.milliseconds = kNaN;
@@ -82,14 +83,16 @@ bool is_same_answer(const AssessmentRecord& one, const AssessmentRecord& other) 
   return bytes_of(one) == bytes_of(other);
 }
 
-/// Another status than Ipopt's may be a matter of its time.
+/// Whether each audited step has the same status as with Ipopt. A different one may be a matter of Ipopt's
+/// time limit.
 bool all_of_audit_agree(const std::vector<AuditedStep>& audited) {
   return std::all_of(audited.begin(), audited.end(), [](const AuditedStep& step) {
     return step.targets.same_status && step.moves.same_status;
   });
 }
 
-/// The record without answers; its loop, where it is to be assessed again, without what follows from it.
+/// The record without answers. It keeps its loop only if its status is ok, so that methods can assess it
+/// again; y_sim, which follows from the loop, is set to zero.
 ExperimentRecord unanswered(ExperimentRecord record) {
   record.assessments.clear();
   if (record.status != ExperimentStatus::ok)
@@ -250,7 +253,7 @@ KnownLoop LoopMemory::known_loop(std::int64_t key, const std::string& loop) cons
   return known;
 }
 
-/// The answers of these methods that may be kept.
+/// The answers of the methods `asked` that may be kept.
 LoopMemory::NamedAnswers LoopMemory::answers_to_keep(const ExperimentRecord& record,
                                                      const std::vector<std::string>& asked,
                                                      bool by_process) const {
@@ -258,7 +261,8 @@ LoopMemory::NamedAnswers LoopMemory::answers_to_keep(const ExperimentRecord& rec
   for (const AssessmentRecord& said : record.assessments) {
     const MethodDescription& method = said.form->method();
     const std::string& name = kept_.find(method.name)->second.name;
-    // Ipopt, which only a process has, has a limit of time, and so has a program.
+    // A failure may be a matter of time: Ipopt, which runs in processes only, has a time limit, and so has a
+    // program.
     const bool is_kept = said.status == AssessmentStatus::failed ? !by_process && method.origin.empty()
                                                                  : record.status == ExperimentStatus::ok;
     if (name.empty() || !is_kept || std::find(asked.begin(), asked.end(), method.name) == asked.end())

@@ -18,57 +18,59 @@
 
 namespace mpm {
 
-/// A method with a threshold is asked again about every loop whose key is a multiple of it.
+/// A method with a threshold is asked again about every loop whose key is a multiple of this number.
 inline constexpr std::int64_t kCheckedLoops = 16;
 
 /// What is known about a loop before it is run.
 struct KnownLoop {
-  /// With its loop where its status is ok, and with the answers that are known.
+  /// The record has its loop if its status is ok, and the answers that are known.
   ExperimentRecord record;
   std::vector<std::string> unheard = {};  ///< methods whose answers are not known
-  bool has_truth = true;                  ///< of an experiment that this program has run as a whole
-  bool by_process = false;                ///< a worker process ran it, as the methods are to be asked by one
+  bool has_truth = true;                  ///< this program has run the whole experiment
+  bool by_process = false;                ///< a worker process ran it; one must also ask the methods
   /// Known answers that are asked for again, to check that they are the same (require_expected()).
   std::vector<AssessmentRecord> expected = {};
-  double audit_share = 0.0;  ///< of its steps that were audited
+  double audit_share = 0.0;  ///< share of its steps that were audited
   std::vector<AuditedStep> audited = {};
 
-  /// Throws BrokenPromise where a method has answered otherwise than with the threshold that it had before.
+  /// Throws BrokenPromise if the new answer of a method, unless it failed, differs from the known one in
+  /// `expected`.
   void require_expected() const;
 };
 
-/// The loops of one campaign that an earlier run has left in a cache, each with its truth, and what methods
-/// of this program have said about them: what decides on them is the program with the libraries and the
-/// processor that it runs on, text and seed of the study, the solver, and whether threads or worker processes
-/// run. Answers of outside programs are not kept, since they may depend on anything, unless the method says
-/// what its threshold is (RunOptions::threshold_options): then they are kept for every threshold, and one
-/// loop in kCheckedLoops is asked again. Nor is anything that has failed, since that may be a matter of time.
+/// The loops of one campaign that an earlier run has left in a cache, each with its truth, and the answers of
+/// the methods of this program about them. They depend on the program with its libraries and processor, on
+/// text and seed of the study, on the solver, and on whether loops run in threads or worker processes.
+/// Answers of outside programs are not kept, since they may depend on anything, unless the method names its
+/// threshold option (RunOptions::threshold_options): then its answers are kept for every threshold, and it is
+/// asked again about one loop in kCheckedLoops. A failure that may be a matter of time is not kept either.
 class LoopMemory {
  public:
-  /// Whether the loops of this campaign may be kept: some have a plant or a controller of somebody else, or
-  /// are assessed by what RunOptions::assessor makes.
+  /// Whether the loops of this campaign may be kept. They may not if the plant or the controller is somebody
+  /// else's, if RunOptions::assessor assesses them, or if the archive stores loops.
   static bool may_keep(const Study& study, const RunOptions& options);
 
-  /// Of a campaign whose study and calibration study, or null, must outlive it.
+  /// `study` and `calibration`, which is null if the campaign has none, must outlive this object.
   LoopMemory(const Study& study, const Study* calibration, const RunOptions& options);
   LoopMemory(const LoopMemory&) = delete;
   LoopMemory& operator=(const LoopMemory&) = delete;
 
-  /// The loop with this key of CampaignLoops, with its truth and the audit of its steps; none: it has to be
-  /// run. From any thread.
+  /// Returns the loop with this key of CampaignLoops, with its truth and the audit of its steps; none if it
+  /// has to be run. May be called from any thread.
   std::optional<KnownLoop> find(std::int64_t key) const;
-  /// The same for an experiment of an archive, whose truth is there; none where the record differs from that
-  /// of the archive in anything.
+  /// The same for an experiment of an archive, which has the truth already; none if the kept record differs
+  /// in anything from that of the archive.
   std::optional<KnownLoop> find_same(std::int64_t key, const ExperimentRecord& record) const;
 
-  /// What is to be kept of a loop that was not known, with its answers, as bytes. Empty: nothing.
+  /// Returns the bytes to keep of a loop that was not known, with its answers; empty if there is nothing to
+  /// keep.
   std::string to_keep(std::int64_t key, const KnownLoop& loop) const;
-  /// The same of one that was known, once the methods that were not heard have answered.
+  /// The same for a known loop, once the methods in `unheard` have answered.
   std::string to_keep(const KnownLoop& known) const;
-  /// Takes such bytes. One call at a time; find() may run beside it, and does not find them.
+  /// Takes bytes from to_keep(). One call at a time; find() may run meanwhile, but does not find them.
   void take(std::int64_t key, std::string bytes);
 
-  /// Writes new results into the cache. Returns, the first time, the reason if that fails.
+  /// Writes new results into the cache. If that fails, returns the reason, the first time only.
   std::optional<std::string> write();
 
  private:
@@ -76,8 +78,8 @@ class LoopMemory {
 
   /// How the answers of a method are kept.
   struct Kept {
-    std::string name = {};  ///< its own, with everything else that the answers depend on; empty: not kept
-    std::optional<double> threshold = {};  ///< by which their flags are made anew
+    std::string name = {};  ///< of the method, with all else that its answers depend on; empty: not kept
+    std::optional<double> threshold = {};  ///< with which kept answers are flagged anew
   };
   using NamedAnswers = std::vector<std::pair<std::string, std::string>>;
 
@@ -105,8 +107,8 @@ class LoopMemory {
   bool new_loops_ = false, new_answers_ = false;
 };
 
-/// Leaves what is new in the cache when its scope ends, also by an exception: what an interrupted run has
-/// done is kept as well. `warn`, unless it is empty, receives the reason if that cannot be done.
+/// Writes new results into the cache when its scope ends, also by an exception, so that the work of an
+/// interrupted run is kept as well. `warn`, unless it is empty, receives the reason if that fails.
 class KeepAtEnd {
  public:
   KeepAtEnd(LoopMemory* memory, std::function<void(const std::string&)> warn)
