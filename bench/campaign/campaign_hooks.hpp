@@ -13,11 +13,11 @@ namespace mpm {
 struct CampaignHooks {
   /// Asked at each step of the basis case, and before each experiment.
   StopRequest stop = {};
-  /// Called once the basis case is there, before it is checked.
+  /// Called once, when the basis case has been run and before it is checked.
   std::function<void(const Study&, const BasisCase&)> on_basis = {};
   /// Called once before the first experiment: an earlier run has left `done` of the `count` experiments.
   std::function<void(std::int64_t done, std::int64_t count)> on_start = {};
-  /// Called after each experiment that is done, in the order of completion, and whether it failed.
+  /// Called after each finished experiment, in the order of completion; `failed`: the experiment failed.
   std::function<void(bool failed)> on_done = {};
   /// Called with a text that the user must see.
   std::function<void(const std::string&)> on_warning = {};

@@ -29,10 +29,10 @@ void require_options(const RunOptions& options) {
     throw InputError("jobs", fmt::format("{}", options.jobs), "a whole number >= 1");
   if (!(options.audit_share >= 0.0 && options.audit_share <= 1.0))
     throw InputError("audit share", fmt::format("{}", options.audit_share), "a number from 0 to 1");
-  qp_solver_factory(options.solver);  // refuses one that there is not
+  qp_solver_factory(options.solver);  // refuses an unknown solver
 }
 
-/// The options by which experiments are run whose loops are kept in a cache.
+/// The options with which experiments run. If a cache keeps their loops, each record has its loop.
 RunOptions with_loops(RunOptions options, bool kept) {
   options.store = kept ? StorePolicy::all : options.store;
   return options;
@@ -65,7 +65,7 @@ bool earlier(const AuditedStep& one, const AuditedStep& other) {
   return std::tie(one.experiment, one.step) < std::tie(other.experiment, other.step);
 }
 
-/// The names of what differs where both have audited a step.
+/// The names of the audit results that differ, over the steps that both outcomes have audited.
 std::vector<std::string> audit_differences(const ExperimentOutcome& one, const ExperimentOutcome& other) {
   std::vector<std::string> names;
   for (const AuditedStep& here : one.audited)
@@ -106,7 +106,7 @@ CampaignLoops::CampaignLoops(Study study, RunOptions options)
       experiments_(experiment_count(study_, options_)),
       bytes_(study_) {
   require_options(options_);
-  runs_in_threads(study_, options_);  // refuses threads
+  runs_in_threads(study_, options_);  // refuses threads if the solver must not run in them
   if (!study_.calibration)
     return;
   calibration_ = calibration_study(study_);
@@ -213,7 +213,7 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
                         *this, basis, qp_solver_factory(options_.solver), memory != nullptr)](
                        std::int64_t key, const std::string& begun) {
       if (std::optional<KnownLoop> known = known_in(memory, key)) {
-        known->by_process = true;  // the answers that are new are a process's
+        known->by_process = true;  // a process gives the new answers
         return heard_result(key, *std::move(known), *memory, worker->work(key));
       }
       ExperimentOutcome outcome = begun.empty() ? worker->run(key) : bytes(key).from_bytes(begun);
@@ -238,7 +238,7 @@ LoopWork CampaignLoops::work(const BasisCase& basis, const ShardStore::Warn& war
                        outcome.samples.size(), key, why, again ? "left out of the audit" : "audited again"));
     if (!again)
       return std::nullopt;
-    outcome.samples.clear();  // neither agreement nor disagreement: nothing was found out about them
+    outcome.samples.clear();  // they count neither as agreement nor as disagreement
     return result(key, outcome);
   };
   return work;
@@ -262,7 +262,7 @@ ExperimentOutcome CampaignLoops::outcome(const ShardStore::Entry& entry) const {
     if (outcome.record.draw.index != entry.key % kCalibrationKeys)
       throw std::runtime_error(fmt::format("loop {}", outcome.record.draw.index));
     return outcome;
-  } catch (const std::exception& error) {  // also an InputError of a part that refuses its numbers
+  } catch (const std::exception& error) {  // also an InputError that refuses numbers in the bytes
     if (is_of_surroundings(error))
       throw;
     throw UnreadableShard(*entry.shard, fmt::format("entry {}: {}", entry.key, error.what()));

@@ -22,20 +22,21 @@ class ExperimentWork;
 class LoopMemory;
 struct KnownLoop;
 
-/// How many experiments a run has. Throws InputError for a number that the study does not have.
+/// Returns the number of experiments of a run. Throws InputError for a number that the study cannot have.
 std::int64_t experiment_count(const Study& study, const RunOptions& options);
 
-/// How many calibration loops it has; 0 when the study asks for none.
+/// Returns the number of calibration loops of a run; 0 if the study asks for none.
 std::int64_t calibration_loops(const Study& study);
 
-/// The options by which calibration loops are run: nothing is audited, no loop is kept, and always all.
+/// Returns the options with which calibration loops run: all of them, without an audit, and without keeping
+/// the loops.
 RunOptions calibration_options(RunOptions options);
 
-/// The loops of a run, its experiments and its calibration loops: how they are run, what is stored of them,
-/// and how records are made from that.
+/// The loops of a run, which are its experiments and its calibration loops: decides how they run and what is
+/// stored of them, and makes records from what is stored.
 class CampaignLoops {
  public:
-  /// `study` is as study_to_run() gave it. Throws InputError for options that make no campaign.
+  /// `study` must come from study_to_run(). Throws InputError for options with which no campaign can run.
   CampaignLoops(Study study, RunOptions options);
   CampaignLoops(const CampaignLoops&) = delete;
   CampaignLoops& operator=(const CampaignLoops&) = delete;
@@ -49,43 +50,46 @@ class CampaignLoops {
   /// Experiments and calibration loops.
   std::int64_t count() const { return experiments_ + calibration_loops(study_); }
 
-  /// The keys of loops, and the reverse: experiments are counted first, and behind them calibration loops.
+  /// Converts ranges of loops to keys, and back. Ranges count the experiments first, then the calibration
+  /// loops.
   std::vector<std::int64_t> keys(const LoopRanges& loops) const;
   LoopRanges loops(const std::vector<std::int64_t>& keys) const;
 
-  /// Opens the shards in this folder. Errors: as ShardStore; InputError for one with an experiment that the
-  /// campaign has not.
+  /// Opens the shards in this folder. Errors: as ShardStore; InputError for a shard with an experiment that
+  /// the campaign does not have, unless Leftovers::renew discards it.
   ShardStore open(const std::filesystem::path& folder, const ShardStore::Warn& warn) const;
   /// A store without a folder.
   ShardStore in_memory() const { return ShardStore(shard_identity(study_, options_)); }
 
-  /// How they are run, by methods that have learnt from `basis`, in threads or processes. What needs Ipopt
-  /// goes from threads to worker processes: audits, and with `auto` the experiments in which some answer was
-  /// not certified, as a whole. A loop whose worker process died is kept as failed. `warn` is told of audits
-  /// that were lost. What `memory` knows, unless it is null, is not run: the methods that it has not heard
-  /// are asked, and what is new goes there. The basis case, the memory and this object must outlive it.
+  /// Returns how the loops run, in threads or processes, with methods that have learnt from `basis`. Threads
+  /// leave to worker processes what needs Ipopt: audits and, with the solver `auto`, each whole experiment in
+  /// which an answer was not certified. A loop whose worker process died is stored as failed. `warn` is told
+  /// of audits that were lost. If `memory` is not null, the loops that it knows are not run: only the methods
+  /// whose answers it lacks are asked, and new results go into it. The basis case, the memory and this object
+  /// must outlive the result.
   LoopWork work(const BasisCase& basis, const ShardStore::Warn& warn, LoopMemory* memory = nullptr) const;
 
-  /// An outcome as it is kept, and as it was.
+  /// Converts an outcome to the result to store, and a stored entry back to its outcome.
   LoopResult result(std::int64_t key, const ExperimentOutcome& outcome) const;
   ExperimentOutcome outcome(const ShardStore::Entry& entry) const;
 
-  /// The records of the experiments, or of the calibration loops, that are in the store, which must outlive
-  /// them as this object must. They throw Interrupted when a stop was requested, and as ShardStore::Next.
+  /// The records of the experiments, or of the calibration loops, in the store. The store and this object
+  /// must outlive them. Reading them throws Interrupted if a stop was requested, and the errors of
+  /// ShardStore::Next.
   RecordRange experiment_records(const ShardStore& store, const StopRequest& stop) const;
   RecordRange calibration_records(const ShardStore& store, const StopRequest& stop) const;
 
-  /// Gives the campaign, which has its study and its info, the records in the store, as
-  /// experiment_records() or, where it is asked for or the study names its scenarios, in memory; the audit;
-  /// and the calibration, when all of its loops are there. Errors: as experiment_records(); InputError, which
-  /// names both files, when two shards have one loop with different results.
+  /// Fills a campaign that has its study and its info from the store, with three things: the records, as
+  /// experiment_records(), or in memory if `in_memory` says so or the study names its scenarios; the audit;
+  /// and the calibration, if all of its loops are there. Errors: as experiment_records(); InputError, which
+  /// names both files, if two shards have different results for one loop.
   void take(Campaign& campaign, const ShardStore& store, const StopRequest& stop, bool in_memory) const;
 
  private:
-  /// Of a loop that was run.
+  /// The result of a loop that was run.
   LoopResult kept_result(std::int64_t key, ExperimentOutcome outcome, const LoopMemory* memory,
                          bool by_process) const;
-  /// Of a loop that was known.
+  /// The result of a loop that the memory knew; asks the methods whose answers it lacked.
   LoopResult heard_result(std::int64_t key, KnownLoop known, const LoopMemory& memory,
                           ExperimentWork& work) const;
   const OutcomeBytes& bytes(std::int64_t key) const;

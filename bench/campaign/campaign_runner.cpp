@@ -37,8 +37,8 @@ int world_of(const CampaignLoops& loops, std::int64_t key) {
   return world_of(key < kCalibrationKeys ? loops.study() : loops.calibration(), key % kCalibrationKeys);
 }
 
-/// The keys in the order in which their loops are run: those of a world one after the other, so that its
-/// benchmark is learnt from, and a program is told it, once.
+/// Returns the keys in the order in which their loops run. The loops of one world follow each other, so that
+/// methods learn from its benchmark only once, and a program is told it only once.
 std::vector<std::int64_t> in_turn(const CampaignLoops& loops, std::vector<std::int64_t> keys) {
   if (!loops.study().world)
     return keys;
@@ -51,7 +51,7 @@ std::vector<std::int64_t> in_turn(const CampaignLoops& loops, std::vector<std::i
   return keys;
 }
 
-/// The basis case, and then what the store lacks of the loops with these keys.
+/// Runs the basis case, and then those of the loops with these keys that the store lacks.
 BasisCase run_loops(const CampaignLoops& loops, ShardStore& store, const std::vector<std::int64_t>& keys,
                     const CampaignHooks& hooks) {
   const std::int64_t count = std::ssize(keys);
@@ -71,8 +71,8 @@ BasisCase run_loops(const CampaignLoops& loops, ShardStore& store, const std::ve
   return basis;
 }
 
-/// Notes in a folder of shards to which campaign they belong, so that finished work can be looked at. The
-/// note is removed at the end if there is no shard.
+/// Writes into a folder of shards a description of their campaign, so that finished work can be looked at.
+/// Removes the description at the end if there is no shard.
 class ShardsDescription {
  public:
   ShardsDescription(const std::filesystem::path& shards, const CampaignLoops& loops) : shards_(shards) {

@@ -21,7 +21,7 @@
 namespace mpm {
 namespace {
 
-/// Changes every record, at once, or those that are streamed whenever they are read.
+/// Changes every record: at once if the records are in memory, whenever one is read if they are streamed.
 void change_records(Campaign& campaign, const std::function<RecordChange()>& begin) {
   if (campaign.streamed) {
     campaign.streamed = changed(*campaign.streamed, begin);
@@ -41,7 +41,7 @@ List chosen(const List& all, const std::vector<std::size_t>& places) {
   return list;
 }
 
-/// The places of the methods of a campaign that are not among these.
+/// The places of the methods of a campaign that are not among `forms`.
 std::vector<std::size_t> places_of_others(const Campaign& campaign, const AssessmentForms& forms) {
   std::vector<std::size_t> places;
   for (std::size_t place = 0; place < campaign.methods.size(); ++place)
@@ -52,11 +52,11 @@ std::vector<std::size_t> places_of_others(const Campaign& campaign, const Assess
   return places;
 }
 
-/// What further methods say about a record, one after the other in the order of the index; nothing about a
-/// loop that they were not asked about.
+/// Returns the answers of further methods about a record; none about a loop that they were not asked about.
+/// The records must come one after the other, in the order of their index.
 using Answers = std::function<std::vector<AssessmentRecord>(const ExperimentRecord&)>;
 
-/// The answers in records of the same experiments, or of some of them.
+/// The answers in `assessed`, which has records of the same experiments or of some of them.
 Answers answers_in(const RecordRange& assessed) {
   RecordRange::Next next = assessed.one_by_one();
   const ExperimentRecord* const first = next();
@@ -68,8 +68,8 @@ Answers answers_in(const RecordRange& assessed) {
   };
 }
 
-/// Puts the answers of further methods behind those of the campaign, and replaces those that it has of
-/// them; `begin` gives them for one way through its records.
+/// Appends the answers of further methods to those of the campaign, and replaces answers that it already has
+/// of these methods. `begin` gives the answers for one pass through the records.
 void append(Campaign& campaign, const AssessmentForms& forms, const std::function<Answers()>& begin,
             const std::string& command) {
   const std::vector<std::size_t> others = places_of_others(campaign, forms);
@@ -122,7 +122,7 @@ std::vector<CampaignMethod> methods_of(const Study& study, const std::string& co
 
 namespace {
 
-/// The study of an archive, as the further methods have it.
+/// The study of an archive, with the further methods instead of its own.
 Study study_with(Study study, const std::vector<std::string>& methods) {
   study.methods = methods;
   return study;
@@ -143,8 +143,8 @@ RunOptions run_options(const Campaign& campaign, const ComparedLoops& loops,
           .threshold_options = options.threshold_options};
 }
 
-/// The numbers of blind loops in the order in which they are made: that of the records, and then the
-/// calibration loops.
+/// The numbers of blind loops in the order in which the loops are made: experiments in the order of the
+/// records, then calibration loops.
 std::vector<std::int64_t> numbers_in_turn(const std::vector<BlindLoop>& order) {
   std::vector<std::int64_t> numbers(order.size());
   std::iota(numbers.begin(), numbers.end(), std::int64_t{0});
@@ -157,7 +157,7 @@ std::vector<std::int64_t> numbers_in_turn(const std::vector<BlindLoop>& order) {
   return numbers;
 }
 
-/// A loop as methods see it as bytes, and the reverse.
+/// Converts a loop, as methods see it, to bytes or back.
 template <class Stream, class Loop>
 void transfer_loop(Stream& stream, Loop& loop) {
   for (const LoopSignal& signal : loop_signals())
@@ -184,7 +184,7 @@ template <class Assess>
 LoopResult Comparison::kept_answers(std::int64_t key, ExperimentRecord record, const Assess& assess) const {
   if (key < kCalibrationKeys) {
     record.assessments = assess(record);
-    record.loop.reset();  // the archive has them
+    record.loop.reset();  // the archive has both
     record.truth.reset();
   }
   return loops_.result(key, {.record = std::move(record), .samples = {}, .audited = {}});
@@ -281,7 +281,7 @@ void run_blind_loops(const Campaign& campaign, const std::vector<BlindLoop>& ord
 
 namespace {
 
-/// The loops that stand in this place of each result.
+/// The loops at this place in each result: 0 for the blind loops, 1 for their benchmarks.
 BlindLoops loops_at(int place, const ShardStore& store, std::size_t count) {
   return {count, [place, &store, count]() -> BlindLoops::Next {
             return [place, next = store.in_order(0, static_cast<std::int64_t>(count))] {

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Are they the loops that this run would make?
+/// Whether the campaign has the loops that this run would make.
 bool has_loops_of(const Campaign& campaign, const Study& study, const RunOptions& options) {
   const std::int64_t count = options.experiments.value_or(study.experiment_count());
   return campaign.study.source == study.source && campaign.study.seed == study.seed &&
@@ -55,7 +55,7 @@ std::optional<Campaign> kept_campaign(const fs::path& archive, const Study& stud
       return std::nullopt;
     std::error_code no_status;
     if (fs::exists(shard_folder_of(archive), no_status))
-      remove_shards(archive);  // of a run that was killed between archive and clean-up
+      remove_shards(archive);  // a run that was killed between archive and clean-up left them
   }
   return campaign;
 }
@@ -103,7 +103,7 @@ KeptRun run_unless_kept(const fs::path& archive, const Study& study, const RunOp
   } catch (const InputError& error) {
     remove_shards(archive);
     std::error_code no_file;
-    fs::remove(archive, no_file);  // of another run: the table says that there is none
+    fs::remove(archive, no_file);  // an archive of another run: the table says that there is none
     return {.trouble = error.what()};
   }
 }

@@ -22,13 +22,14 @@
 namespace mpm {
 namespace {
 
-/// How long threads run before what they have left unfinished is worked off: much longer than an experiment,
-/// so that waiting for the last one is little, and no more than a killed run may lose.
+/// How long threads run before worker processes finish what the threads have left: much longer than an
+/// experiment, so that the wait for the last one is short, and no longer than the work that a killed run may
+/// lose.
 constexpr std::chrono::seconds kRound(2);
 constexpr std::int64_t kMostInRound = 100'000;
-/// Of the loops of a round: the most that a thread takes together, with so many threads.
+/// The most loops of a round that one of `threads` threads takes together.
 std::size_t most_together(std::size_t count, int threads) {
-  constexpr std::size_t kTurns = 4;  // of each thread at least, so that none waits long for the last one
+  constexpr std::size_t kTurns = 4;  // turns of each thread, so that none waits long for the last one
   return std::max<std::size_t>(1, count / (kTurns * static_cast<std::size_t>(threads)));
 }
 
@@ -39,7 +40,7 @@ constexpr std::size_t kMostWaiting = 1000;
 struct BegunLoop {
   std::int64_t key = 0;
   std::string begun = {};
-  bool again = false;      ///< after the worker process that had it crashed
+  bool again = false;      ///< tried again, after its worker process crashed
   bool disturbed = false;  ///< its surroundings failed once
 };
 
@@ -110,7 +111,8 @@ class LoopFarm {
     }
   }
 
-  /// Has threads run the next `count` loops or, where worker processes wait, those for which there is time.
+  /// Runs the next `count` loops in threads; if there are worker processes, only as many as a round has time
+  /// for.
   void run_round(std::vector<LoopWork::Thread>& threads, std::size_t count) {
     using RoundClock = std::chrono::steady_clock;
     const RoundClock::time_point end = pool_ ? RoundClock::now() + kRound : RoundClock::time_point::max();
@@ -147,7 +149,7 @@ class LoopFarm {
     std::copy(left_out.begin(), left_out.end(), missing_.begin() + static_cast<std::ptrdiff_t>(next_));
   }
 
-  /// Of the next `count` loops: where those end that a thread takes together.
+  /// The ends of the groups, among the next `count` loops, that a thread takes together.
   std::vector<std::size_t> ends_of_groups(std::size_t count) const {
     const std::size_t most = work_.group ? most_together(count, work_.jobs) : 1;
     std::vector<std::size_t> ends;
@@ -160,7 +162,7 @@ class LoopFarm {
     return ends;
   }
 
-  /// Has worker processes do what is waiting, and what `more` gives, unless it is to stop.
+  /// Runs the waiting loops, and those that `more` gives, in worker processes until a stop is requested.
   template <class More>
   void work_off(const More& more) {
     std::map<std::int64_t, BegunLoop> under_way;
@@ -224,14 +226,14 @@ class LoopFarm {
     if (work_.on_aside && !result.aside.empty())
       work_.on_aside(key, std::move(result.aside));
     if (requested(work_.stop))
-      store_.flush();  // what else runs may not end in the time that there is
+      store_.flush();  // the other loops may not end in the time that is left
   }
 
   ShardStore& store_;
   const LoopWork& work_;
   std::vector<std::int64_t> missing_;
   std::int64_t count_, done_;
-  std::size_t next_ = 0;  ///< of the missing ones
+  std::size_t next_ = 0;  ///< place of the next loop among the missing ones
   std::mutex delivery_;
   std::deque<BegunLoop> waiting_;  ///< for worker processes
   std::atomic<std::size_t> count_waiting_ = 0;

@@ -22,7 +22,7 @@ void require_same_campaign(const PartFolder& part, const PartFolder& first) {
                part.path.string());
 }
 
-/// Those of a campaign with as many loops as the whole one, in pieces of one number.
+/// Whether these are parts of a campaign of `loops` loops that was split into one number of pieces.
 bool are_pieces(const std::vector<PartFolder>& parts, std::int64_t loops) {
   return !parts.empty() && std::all_of(parts.begin(), parts.end(), [&](const PartFolder& part) {
     return part.loops == loops && part.part.number->of == parts.front().part.number->of;
@@ -41,8 +41,8 @@ std::string MissingPieces::array() const {
   return text;
 }
 
-/// A run that is finished packs its shards: each of the few large ones is there before the small ones go, so
-/// that another look finds all of it, and that soon.
+/// A run packs its shards when it is finished: it writes the few large ones before it removes the small ones.
+/// If a small one is gone, another look soon finds everything.
 PartMerge::PartMerge(const std::vector<std::string>& folders, std::shared_ptr<const MethodTable> methods,
                      const ShardStore::Warn& warn)
     : methods_(std::move(methods)) {

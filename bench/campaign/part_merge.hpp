@@ -17,21 +17,21 @@ namespace mpm {
 
 /// The unfinished pieces of a split run.
 struct MissingPieces {
-  std::int64_t of = 1;                ///< pieces
+  std::int64_t of = 1;                ///< number of all pieces
   std::vector<std::int64_t> numbers;  ///< in ascending order, from 1 on
 
-  /// As job arrays are asked for: "3,7-9".
+  /// The numbers as one asks for a job array: "3,7-9".
   std::string array() const;
 };
 
 /// The merged parts of one run.
 class PartMerge {
  public:
-  /// Looks at the shards of all parts in these folders. A damaged shard is passed over with a warning, what
-  /// it holds is missing; of runs at work, what they have finished by now. Throws InputError for a folder
-  /// without parts, and for parts that were not run by this program, or not with the study, seed, methods,
-  /// solver, audit share and store of the first one; the number of experiments may differ, the largest one
-  /// counts. `methods` are those that the study may name; none: those of this program.
+  /// Looks at the shards of all parts in these folders. Skips a damaged shard with a warning; its loops are
+  /// missing. Takes from runs in progress what they have finished so far. Throws InputError for a folder
+  /// without parts, and for parts that were not run by this program or that differ from the first one in
+  /// study, seed, methods, solver, audit share or store. The number of experiments may differ: the largest
+  /// one counts. `methods` are those that the study may name; none: those of this program.
   PartMerge(const std::vector<std::string>& folders, std::shared_ptr<const MethodTable> methods,
             const ShardStore::Warn& warn);
 
@@ -43,20 +43,20 @@ class PartMerge {
 
   /// The loops that no part has.
   LoopRanges missing() const;
-  /// The same in pieces, as long as some part is a piece of the whole campaign, and all of these are of
-  /// equally many.
+  /// The pieces with missing loops; none unless parts are numbered pieces of the whole campaign, split into
+  /// one number of pieces.
   std::optional<MissingPieces> missing_pieces() const;
 
-  /// How many experiments the parts have, calibration loops apart.
+  /// The number of experiments that the parts have, without calibration loops.
   std::int64_t experiments_done() const;
 
-  /// The campaign: basis case, records and audit are those of run_campaign() in one go, bit for bit. Of what
-  /// is missing() there is no record, and no calibration unless all of its loops are there. `hooks` see the
-  /// basis case, and may stop it. The records stay in the shards of the parts, and are there as long as this
-  /// object.
+  /// Returns the campaign. Basis case, records and audit are those of a single run_campaign(), bit for bit.
+  /// The loops that are missing() have no record, and there is no calibration unless all of its loops are
+  /// there. `hooks` see the basis case, and may stop it. The records stay in the shards of the parts, and can
+  /// be read as long as this object lives.
   ///
-  /// Throws InputError when two parts have the same experiment with another result, UnhealthyBasis,
-  /// Interrupted and ArchiveError as run_campaign(), ShardGone.
+  /// Throws InputError if two parts have different results for one experiment, UnhealthyBasis, Interrupted
+  /// and ArchiveError as run_campaign(), ShardGone.
   Campaign merge(const CampaignHooks& hooks) const;
 
  private:

@@ -45,7 +45,7 @@ struct TableRun {
   std::int64_t key;
 };
 
-/// A number for all that the numbers of a table depend on, beside program and solver.
+/// A key that stands for everything, besides program and solver, that the numbers of a table depend on.
 std::int64_t key_of(const ThesisTable& table) {
   std::string text = table.name() + '\n';
   for (const auto& [variant, study] : table.studies)
@@ -75,7 +75,7 @@ ShardIdentity identity_of(const TableRuns& runs) {
   return {{"program", program_identity()}, {"solver", runs.run.solver}};
 }
 
-/// The folders of these tables: that of all, and within it those of parts.
+/// The folders of these tables: the common one, and those of the parts within it.
 std::vector<fs::path> folders_of(const TableRuns& runs) {
   std::vector<fs::path> folders{*runs.folder};
   std::error_code no_folder;
@@ -90,7 +90,7 @@ ShardStore opened_tables(const TableRuns& runs) {
     return ShardStore(identity_of(runs));
   make_output_folder(*runs.folder, "tables");
   const fs::path own = runs.part ? *runs.folder / part_name("", runs.part) : *runs.folder;
-  ShardStore store(own, identity_of(runs), {Leftovers::renew, 0.0, runs.warn});  // a table takes long
+  ShardStore store(own, identity_of(runs), {Leftovers::renew, 0.0, runs.warn});  // a shard a table
   for (const fs::path& folder : folders_of(runs))
     try {
       if (folder != own)
@@ -101,8 +101,8 @@ ShardStore opened_tables(const TableRuns& runs) {
   return store;
 }
 
-/// The basis cases of tables that have a study in common, with one seed; those of earlier seeds go when no
-/// table needs them any more.
+/// The basis cases for each seed, which tables with the same study share. Drops those of earlier seeds when
+/// no table needs them any more.
 class SeededBasisCases {
  public:
   explicit SeededBasisCases(QpSolverFactory factory) : factory_(std::move(factory)) {}
@@ -183,7 +183,7 @@ void remove_kept(const TableRuns& runs) {
     try {
       ShardStore(folder, identity_of(runs), {}).remove(keys);
     } catch (const InputError&) {
-      continue;  // another program's, or at work
+      continue;  // shards of another program, or a run in progress
     }
   std::error_code stays;
   fs::remove(*runs.folder, stays);  // when nothing is left in it

@@ -17,7 +17,7 @@ namespace mpm {
 /// How the tables of the thesis are run.
 struct TableRuns {
   std::vector<ThesisTable> tables;
-  int seeds = 1;   ///< those of their studies, these plus 1, ...
+  int seeds = 1;   ///< how many: those of the studies, those plus 1, ...
   RunOptions run;  ///< solver and threads; the rest stands in the files of the tables
   std::optional<std::filesystem::path> folder = {};  ///< where numbers wait for their page; none: in memory
   std::optional<PartNumber> part = {};               ///< which of the tables and seeds are run; none: all
@@ -27,15 +27,15 @@ struct TableRuns {
   ShardStore::Warn warn = {};
 };
 
-/// Every table with each seed: result[table][seed], by `run.solver`, in `run.jobs` threads, or in one with
-/// another solver than active-set, since Ipopt has no threads; the result is the same, however often it was
-/// stopped. Of a part, the tables that are neither in it nor kept are without rows. Numbers that are kept of
-/// another program, solver or table are made anew. Errors: as table_numbers(), that of the first table and
-/// seed; Interrupted; ArchiveError.
+/// Runs every table with each seed and returns result[table][seed]. The solver is `run.solver`, in `run.jobs`
+/// threads if it is active-set and in one thread otherwise, since Ipopt has no threads. The result is the
+/// same however often the run was stopped. With a part, tables that are neither in it nor kept have no rows.
+/// Kept numbers of another program, solver or table are made anew. Errors: as table_numbers(), for the first
+/// table and seed; Interrupted; ArchiveError.
 std::vector<std::vector<ReproducedTable>> run_tables(const TableRuns& runs);
 
-/// Removes what is kept of these tables with these seeds: the page is written. Numbers of other tables and
-/// seeds wait for another page.
+/// Removes the kept numbers of these tables with these seeds, once their page is written. Numbers of other
+/// tables and seeds stay, for another page.
 void remove_kept(const TableRuns& runs);
 
 }  // namespace mpm

@@ -20,8 +20,8 @@
 namespace mpm {
 namespace {
 
-/// Where somebody else simulates the plant, its processes have to be prepared before threads are at work. Its
-/// file may be gone, or not be trusted: that matters to the loops that are run again, which then say so.
+/// Prepares the processes of a plant that somebody else simulates, before threads are at work. If its file is
+/// gone or not trusted, this matters only to loops that are run again, and they report it.
 void prepare_plant(const Study& study) {
   if (!study.nonlinear || !study.nonlinear->model.foreign)
     return;
@@ -32,17 +32,18 @@ void prepare_plant(const Study& study) {
   }
 }
 
-/// Records for threads, each of which asks for the next one or one soon after it: they are read one after the
-/// other, and in memory are those that others will ask for in a moment, or once more.
+/// Records for threads, each of which asks for the next record or one soon after it. Reads them one after the
+/// other, and holds in memory those that a thread will ask for soon, or once more.
 class RecordsInTurn {
  public:
-  /// Those with these indices, in ascending order, which there are and which must outlive it.
+  /// Gives the records with these indices, which must exist and be in ascending order. `records` must outlive
+  /// this object.
   RecordsInTurn(const RecordRange& records, std::vector<std::int64_t> indices)
       : next_(records.one_by_one()), indices_(std::move(indices)), wanted_(indices_.begin()) {}
   RecordsInTurn(const RecordsInTurn&) = delete;
   RecordsInTurn& operator=(const RecordsInTurn&) = delete;
 
-  /// One that was not dropped.
+  /// Returns the record with this index, which must not have been dropped.
   ExperimentRecord get(std::int64_t index) {
     const std::lock_guard one_at_a_time(mutex_);
     while (read_.count(index) == 0) {
@@ -157,7 +158,8 @@ class Revisit {
     return {.bytes = bytes_.to_bytes(record), .unfinished = true};
   }
 
-  /// One that failed may have needed Ipopt.
+  /// The result of a calibration loop in a thread. A failed loop goes to a worker process: it may have needed
+  /// Ipopt.
   LoopResult calibrated(std::int64_t key, const LoopPlace& place, LoopRunners& runners) const {
     LoopResult none{.bytes = "", .unfinished = true};
     if (std::optional<KnownLoop> known = known_calibration(key))
@@ -175,7 +177,7 @@ class Revisit {
     if (!place.of_calibration)
       return assessed(key, runners.experiments, bytes_.from_bytes(begun), true);
     if (std::optional<KnownLoop> known = known_calibration(key)) {
-      known->by_process = true;  // the answers that are new are a process's
+      known->by_process = true;  // a process gives the new answers
       return heard(key, *runners.calibration, *std::move(known));
     }
     return made(key, *runners.calibration,
@@ -190,7 +192,7 @@ class Revisit {
     return loops_.memory == nullptr ? std::nullopt : loops_.memory->find(key);
   }
 
-  /// An experiment, whose loop is run unless the record has it or it is known.
+  /// The result of an experiment. Its loop is run unless the record has it or the memory knows it.
   LoopResult assessed(std::int64_t key, ExperimentRunner& runner, ExperimentRecord record,
                       bool by_process) const {
     if (loops_.memory == nullptr || record.loop || record.status != ExperimentStatus::ok)
@@ -205,7 +207,7 @@ class Revisit {
     return made(key, runner, std::move(loop));
   }
 
-  /// A loop that has its answers and was not known.
+  /// The result of a loop that was not known and has its answers now.
   LoopResult made(std::int64_t key, ExperimentRunner& runner, KnownLoop loop) const {
     std::string aside = loops_.memory == nullptr ? "" : loops_.memory->to_keep(key, loop);
     LoopResult result = loops_.make(key, runner, std::move(loop.record));
@@ -227,7 +229,7 @@ class Revisit {
   std::string solver_;
   bool has_processes_ = solver_ != "active-set";
   bool by_ipopt_alone_ = solver_ != "auto" && solver_ != "active-set";
-  RecordBytes bytes_;  ///< without answers, which nobody asks for again
+  RecordBytes bytes_;  ///< of records without answers: nobody reads earlier answers
   RecordsInTurn records_;
 };
 

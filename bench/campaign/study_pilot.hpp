@@ -12,13 +12,13 @@ namespace mpm {
 struct StudyPilot {
   Campaign campaign;
   StudyForecast forecast;
-  double basis_seconds = 0.0;           ///< wall clock
-  double seconds = 0.0;                 ///< the whole study, calibration loops too, with as many jobs
+  double basis_seconds = 0.0;  ///< wall clock
+  double seconds = 0.0;        ///< forecast for the study and its calibration loops, with as many jobs
   double milliseconds_of_a_loop = 0.0;  ///< on one core, with all methods
 };
 
-/// Runs the first `loops` experiments, or those that there are, as `options` say, but without an audit, and
-/// keeps nothing. The basis case may be unhealthy. `hooks` see it as run_campaign(). Errors: as
+/// Runs the first `loops` experiments, or all if there are fewer, with these options but without an audit,
+/// and stores nothing. The basis case may be unhealthy. `hooks` are called as by run_campaign(). Errors: as
 /// run_campaign().
 StudyPilot run_pilot(Study study, RunOptions options, std::int64_t loops, CampaignHooks hooks);
 
