@@ -22,7 +22,7 @@
 namespace mpm {
 namespace {
 
-/// A word as a shell reads it back.
+/// A word, quoted so that a shell reads it back.
 std::string quoted(const std::string& word) {
   constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=+@%-";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos)
@@ -59,7 +59,7 @@ CommandResult work(const CommandSet& commands) {
   }
 }
 
-/// What is said about a first word that is neither a command nor an option; empty when it is one.
+/// The message about a first word that is neither a command nor an option; empty if it is one of them.
 std::string unknown_command(const std::string& word, const CommandSet& commands) {
   const std::vector<std::string> names = commands.names();
   if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end())
@@ -68,7 +68,8 @@ std::string unknown_command(const std::string& word, const CommandSet& commands)
                      fmt::join(names, ", "));
 }
 
-/// The word that no option or argument of the command takes; an option before others. Empty: none.
+/// The first word that no option or argument of the command takes, an option before other words; empty if
+/// there is none.
 std::string unknown_word(const CLI::App& command) {
   const std::vector<std::string> words = command.remaining();
   const auto option =
@@ -76,7 +77,7 @@ std::string unknown_word(const CLI::App& command) {
   return option != words.end() ? option->substr(0, option->find('=')) : words.empty() ? "" : words.front();
 }
 
-/// "--methods", "-o": those of the command and of its groups.
+/// The names of the options of a command and of its groups, such as "--methods" and "-o".
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::App* const group : command.get_subcommands({}))
@@ -92,7 +93,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// What is wrong with the words behind the command.
+/// The message about what is wrong with the words after the command.
 std::string wrong_usage(const CLI::App& command, const CLI::ParseError& error) {
   const std::string help =
       fmt::format("mpmbench{} --help", command.get_parent() == nullptr ? "" : " " + command.get_name());
@@ -102,7 +103,7 @@ std::string wrong_usage(const CLI::App& command, const CLI::ParseError& error) {
                        with_nearest(word, option_names(command)), help);
   std::string text = error.what();
   for (const char* behind_name :
-       {" is required", ": 1 required"})  // an option, or its value, as CLI11 says it
+       {" is required", ": 1 required"})  // what CLI11 says if an option or its value is missing
     if (const std::size_t end = text.find(behind_name); end != std::string::npos)
       if (const CLI::Option* const option = command.get_option_no_throw(text.substr(0, end)))
         text = fmt::format("{}: found nothing; allowed: {}", text.substr(0, end), option->get_description());

@@ -50,8 +50,8 @@ constexpr int kFewestWindowSamples = 24;
 struct AssessArguments {
   std::string study, data;
   std::vector<std::string> methods = AssessOptions{}.methods;
-  std::string page;         ///< none when empty
-  std::string calibration;  ///< archive; beside the data when empty
+  std::string page;         ///< empty: no page
+  std::string calibration;  ///< archive; empty: beside the data
   int trials = AssessOptions{}.trials;
   double model_error = 100.0 * AssessOptions{}.model_error;  ///< percent
   std::optional<int> window, stride;
@@ -61,7 +61,7 @@ struct AssessArguments {
   bool quiet = false;
 };
 
-/// The window of the command line, or that of the study where it fits into the record.
+/// The window of the command line, or that of the study if it fits into the record.
 std::optional<MonitoringOptions> monitoring_of(const AssessArguments& options, const Study& study,
                                                PlantRecord& record) {
   std::optional<MonitoringOptions> monitoring = study.monitoring;
@@ -89,7 +89,7 @@ std::filesystem::path calibration_archive(const AssessArguments& options) {
   return options.calibration.empty() ? options.data + ".calibration.h5" : options.calibration;
 }
 
-/// Refuses to replace what is no calibration run.
+/// Refuses to replace an archive that is no calibration run.
 void require_own_archive(const std::filesystem::path& archive) {
   std::error_code no_status;
   if (std::filesystem::exists(archive, no_status) && !is_trial_study(stream_input(archive.string()).study))
@@ -97,10 +97,10 @@ void require_own_archive(const std::filesystem::path& archive) {
                      "another name for the calibration run (--calibration)");
 }
 
-/// Answers on the loops of a kept campaign, by the experiment.
+/// Answers on the loops of a kept campaign, by the index of the experiment.
 using EarlierAnswers = std::map<std::int64_t, std::vector<AssessmentRecord>>;
 
-/// Those of the methods of the study that are not `missing`.
+/// The answers in `campaign` of the methods of the study that are not `missing`.
 std::shared_ptr<const EarlierAnswers> earlier_answers(const Campaign& campaign, const Study& study,
                                                       const std::vector<std::string>& missing) {
   const auto has = [](const std::vector<std::string>& names, const AssessmentRecord& said) {
@@ -132,8 +132,8 @@ LoopAssessor assessor_beside(const TrialRequest& request, const std::vector<std:
   };
 }
 
-/// The kept loops of a request whose methods are all among those that have judged them. Otherwise none, and
-/// `run` asks those that have not.
+/// Returns the kept loops if all methods of the request have judged them. Otherwise returns none, and has
+/// `run` ask only the methods that have not.
 std::optional<Campaign> answered_before(const TrialRequest& request, const std::filesystem::path& archive,
                                         RunOptions& run) {
   std::vector<std::string> missing = request.study.methods;
@@ -148,8 +148,8 @@ std::optional<Campaign> answered_before(const TrialRequest& request, const std::
   return std::nullopt;
 }
 
-/// Runs the loops like the record in workers and keeps them, or takes those that are kept. Methods that have
-/// judged them are not asked again.
+/// Returns what gives the loops like the record: it runs them in workers and keeps them, or takes the kept
+/// ones. Methods that have judged the kept loops are not asked again.
 TrialRunner kept_trials(const AssessArguments& options, Progress& progress, const std::string& command) {
   return [&options, &progress, &command](const TrialRequest& request) {
     const std::filesystem::path archive = calibration_archive(options);

@@ -34,7 +34,7 @@ struct CheckArguments {
   std::string archive;
   std::string gates;
   std::string suite;
-  std::string junit;  ///< files to write; none when empty
+  std::string junit;  ///< files to write; empty: none
   std::string markdown;
   std::string badge;
   bool json = false;
@@ -48,7 +48,7 @@ struct CheckOutput {
   const char* what;
 };
 
-/// Those that are asked for.
+/// The outputs that the user asks for.
 std::vector<CheckOutput> outputs_of(const CheckArguments& options) {
   std::vector<CheckOutput> outputs;
   for (const CheckOutput& output : {CheckOutput{"--junit", options.junit, "JUnit file"},
@@ -65,7 +65,7 @@ void require_outputs(const CheckArguments& options) {
   for (const CheckOutput& output : outputs_of(options)) {
     require_no_input(output.option, output.path, {options.archive, options.gates});
     require_output_folder(output.path, output.what);
-    std::error_code error;  // a device or a pipe takes them all
+    std::error_code error;  // a device or a pipe takes several outputs
     const fs::path path = fs::weakly_canonical(output.path, error);
     if (fs::exists(path, error) && !fs::is_regular_file(path, error))
       continue;
@@ -76,7 +76,7 @@ void require_outputs(const CheckArguments& options) {
   }
 }
 
-/// The gates on these findings. The baseline must not be what is written.
+/// The gates on these findings. Refuses an output that would replace the baseline.
 GateFile gates_of(const CheckArguments& options, const std::vector<Finding>& findings) {
   GateFile gates = load_gates(options.gates, findings);
   if (gates.baseline)
@@ -94,7 +94,7 @@ GateCheck check_archive(const CheckArguments& options) {
   return check_gates(campaign, gates, baseline ? &*baseline : nullptr);
 }
 
-/// The run of a suite, beside the finished board of the same loops.
+/// Checks the run of a suite, beside the finished board if that has the same loops.
 GateCheck check_suite(const CheckArguments& options, const fs::path& board) {
   const BoardHeading heading = board_heading(board);
   const std::string& file = options.suite.empty() ? heading.suite : options.suite;

@@ -35,7 +35,7 @@ struct CheckBoardArguments {
   std::string rerun;  ///< the board of a run on another seed; empty: none
 };
 
-/// What keeps these results from the board of the suite, in sentences.
+/// The reasons, in sentences, why these results cannot join the board of the suite.
 std::vector<std::string> troubles_of(const Suite& suite, const FinishedBoard& board,
                                      const FinishedBoard& finished, const JoinedBoard& joined) {
   std::vector<std::string> troubles = joined.notes;
@@ -54,7 +54,7 @@ std::string suite_of(const CheckBoardArguments& options) {
   return options.suite.empty() ? board_heading(options.board).suite : options.suite;
 }
 
-/// What the file says about its methods, without a place among others: nobody has run them again.
+/// What the file says about its methods, without their place among other methods: nobody has run them again.
 Section stated_section(const Leaderboard& board) {
   Section section = standing_section(board);
   section.title = "What the file says";
@@ -62,7 +62,7 @@ Section stated_section(const Leaderboard& board) {
   return section;
 }
 
-/// The rates of the file against those of a run of the same methods on another seed.
+/// Compares the rates of the file with those of a run of the same methods on another seed.
 std::vector<RerunRate> rates_again(const CheckBoardArguments& options, const Suite& suite,
                                    const FinishedBoard& board) {
   const BoardHeading heading = board_heading(options.rerun);
@@ -111,8 +111,8 @@ Section rerun_section(const std::vector<RerunRate>& rates, const std::string& fi
   return section;
 }
 
-/// Reads the results of methods, holds them against the suite and its finished board, and against a run on
-/// another seed where there is one. No file can prove that a method gave its answers.
+/// Reads the results of methods and compares them with the suite and its finished board, and with a run on
+/// another seed if there is one. No file can prove that a method gave its answers.
 ExitCode check_board(const CheckBoardArguments& options) {
   const Suite suite = find_suite(suite_of(options));
   const FinishedBoard board = read_board(options.board, suite);

@@ -16,7 +16,7 @@ namespace mpm {
 /// The commands of the program, and what each of them does.
 class CommandSet {
  public:
-  /// Does the command by the options that were read: results on stdout, progress on stderr. Its exceptions
+  /// Runs the command with the options that were read: results on stdout, progress on stderr. Its exceptions
   /// become messages and exit codes in execute().
   using Work = std::function<ExitCode()>;
 
@@ -29,10 +29,10 @@ class CommandSet {
   /// Adds a command; declare its options in the returned object.
   CLI::App& add(const std::string& name, const std::string& description, Work work);
 
-  /// All that the command line declares.
+  /// All commands and options that the command line declares.
   const CLI::App& program() const { return program_; }
 
-  /// What the user has typed, as a shell reads it back; goes into archives.
+  /// What the user has typed, quoted so that a shell reads it back. Archives contain it.
   const std::string& command_line() const { return command_line_; }
 
   /// The names of all commands.
@@ -41,7 +41,7 @@ class CommandSet {
   /// Whether the user has named a command.
   bool has_work() const;
 
-  /// Does the command that the user has named; there must be one.
+  /// Runs the command that the user has named; there must be one.
   ExitCode work() const;
 
  private:

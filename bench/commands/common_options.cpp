@@ -22,9 +22,9 @@
 namespace mpm {
 namespace {
 
-constexpr std::uint64_t kMostExperiments = 1'000'000'000;  // what indices of experiments are counted up to
+constexpr std::uint64_t kMostExperiments = 1'000'000'000;  // the limit of the indices of experiments
 
-/// A word that is there.
+/// Accepts any word that is not empty.
 CLI::Validator word_that_is(const std::string& allowed) {
   return {[allowed](const std::string& word) {
             return word.empty() ? "found nothing; allowed: " + allowed : std::string();
@@ -132,7 +132,7 @@ AssessmentMethodInfo method_of_composite(const MethodProgram& composite, const M
 
 MethodPrograms take_method_files(const std::vector<std::string>& files) {
   std::vector<std::string> names;
-  std::vector<MethodProgram> composites;  // of methods that stand behind them, too
+  std::vector<MethodProgram> composites;  // may use methods that follow in the files
   const auto table = std::make_shared<MethodTable>();
   for (const std::string& file : files)
     for (MethodProgram& program : load_method_file(file)) {
@@ -162,7 +162,7 @@ std::vector<std::string> with_programs(const std::vector<std::string>& named,
   if (programs.empty())
     return named;
   std::vector<std::string> methods = named.empty() ? own : named;
-  if (methods == std::vector<std::string>{"all"})  // the programs among them
+  if (methods == std::vector<std::string>{"all"})  // includes the programs
     return methods;
   for (const std::string& program : programs)
     if (std::find(methods.begin(), methods.end(), program) == methods.end())

@@ -40,10 +40,10 @@ void add_archive(CLI::App& app, std::string& archive);
 void add_trust(CLI::App& app);
 void add_index(CLI::App& app, std::int64_t& index);
 void add_experiments(CLI::App& app, std::optional<std::int64_t>& experiments, const std::string& description);
-/// As many as there are cores for this process, unless the user says otherwise.
+/// --jobs (default: the number of cores that this process may use).
 void add_jobs(CLI::App& app, int& jobs, const std::string& description);
 void add_solver(CLI::App& app, std::string& solver);
-/// Names of methods of assessment; their check is left to the command, which knows what it can be asked for.
+/// Names of methods of assessment. The command checks them, since it knows which methods it can take.
 void add_methods_option(CLI::App& app, std::vector<std::string>& methods, const std::string& description);
 /// Files of methods that are programs (docs/bring_your_own.md).
 void add_method_files(CLI::App& app, std::vector<std::string>& files);
@@ -52,12 +52,13 @@ struct MethodPrograms {
   std::vector<std::string> names;
   std::shared_ptr<const MethodTable> table;
 };
-/// Starts each of them for its description. Throws InputError.
+/// Starts each program to get its description. Throws InputError.
 MethodPrograms take_method_files(const std::vector<std::string>& files);
-/// RunOptions::threshold_options of these files.
+/// RunOptions::threshold_options of the methods in these files.
 std::map<std::string, std::string, std::less<>> threshold_options(const std::vector<std::string>& files);
-/// The methods that assess when programs were given: those that the user names, or those of the study or
-/// suite, and the programs. Empty, as `named`, without programs.
+/// The methods that assess if `programs` are given: those that the user has `named`, otherwise the `own` ones
+/// of the study or suite, and in both cases the programs. Returns `named`, which may be empty, without
+/// programs.
 std::vector<std::string> with_programs(const std::vector<std::string>& named,
                                        const std::vector<std::string>& own,
                                        const std::vector<std::string>& programs);
@@ -70,7 +71,7 @@ void add_shard_interval(CLI::App& app, double& interval);
 void add_overwrite(CLI::App& app, bool& overwrite);
 /// --fresh of a command that runs studies whose loops are kept (LoopMemory).
 void add_fresh(CLI::App& app, bool& fresh);
-/// --full of a command whose text is one screen without it (document_text()).
+/// --full of a command whose text without it is one screen (document_text()).
 void add_full(CLI::App& app, bool& full);
 void add_json(CLI::App& app, bool& json);
 CLI::Option* add_quiet(CLI::App& app, bool& quiet, const std::string& description = "No progress");

@@ -50,7 +50,7 @@ struct CompareArguments {
   std::vector<std::string> methods;  ///< empty: all
   std::vector<std::string> method_files;
   std::vector<std::string> verdicts;  ///< FILE or NAME=FILE
-  std::string output;                 ///< archive with the comparison; none when empty
+  std::string output;                 ///< archive with the comparison; empty: none
   std::string shard;                  ///< which piece of the loops is assessed; empty: all of them
   std::optional<std::int64_t> experiments;
   int jobs = 1;
@@ -62,7 +62,7 @@ struct CompareArguments {
   bool full = false;
   bool json = false;
   bool quiet = false;
-  std::string latex, figure;  ///< files of the overview, for a paper; none when empty
+  std::string latex, figure;  ///< files of the overview, for a paper; empty: none
 };
 
 /// Throws InputError for a method that neither this program nor the archive has, or one that is named twice.
@@ -81,7 +81,7 @@ std::vector<std::string> in_archive_or_known(const Campaign& campaign,
   return named;
 }
 
-/// Those that the user names, or every method of this program and of the archive.
+/// The methods that the user names, or every method of this program and of the archive.
 std::vector<std::string> asked_methods(const Campaign& campaign, const std::vector<std::string>& named) {
   if (!named.empty() && named != std::vector<std::string>{"all"})
     return in_archive_or_known(campaign, named);
@@ -97,14 +97,14 @@ struct NamedVerdicts {
   std::filesystem::path path;
 };
 
-/// FILE, which has the name of the file, or NAME=FILE.
+/// Reads FILE, whose verdicts get the name of the file, or NAME=FILE.
 NamedVerdicts named_verdicts(const std::string& word) {
   const auto equals = word.find('=');
   const std::filesystem::path path = equals == std::string::npos ? word : word.substr(equals + 1);
   return {equals == std::string::npos ? path.stem().string() : word.substr(0, equals), path};
 }
 
-/// Puts the verdicts of files beside those of the campaign. Returns the names of their methods.
+/// Adds the verdicts in files to those of the campaign. Returns the names of their methods.
 std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std::string>& files,
                                        const std::string& command_line) {
   std::vector<std::string> names;
@@ -124,8 +124,8 @@ std::vector<std::string> take_verdicts(Campaign& campaign, const std::vector<std
   return names;
 }
 
-/// What a comparison keeps has a name of its own beside the output: a run of the same output keeps shards and
-/// parts as well, and parts stay after `merge`.
+/// The name under which a comparison keeps shards and parts beside the output. It needs a name of its own: a
+/// run of the same output keeps shards and parts as well, and its parts stay after `merge`.
 std::string kept_name(const std::string& output) {
   return output + ".compared";
 }
@@ -138,9 +138,10 @@ std::filesystem::path kept_parts(const std::string& output) {
   return parts_folder_of(kept_name(output));
 }
 
-/// Before the archive is read: what somebody writes into its place meanwhile has another.
+/// The digest of an archive. Take it before the archive is read: if somebody replaces the archive meanwhile,
+/// the new one has another digest.
 std::string digest_of_archive(const std::string& archive) {
-  std::error_code no_status;  // what is no file is refused by its reader
+  std::error_code no_status;  // the reader refuses what is no file
   return std::filesystem::is_regular_file(archive, no_status) ? digest_of_file(archive) : "";
 }
 
@@ -154,7 +155,7 @@ void require_unchanged(const CompareArguments& options, const std::string& diges
         "an archive that no other command writes; run the same command again to use it as it is now");
 }
 
-/// The parts that others have left, or none when all is to begin anew: they are deleted then.
+/// Returns the parts that others have left. If everything is to begin anew, deletes them and returns none.
 std::vector<std::filesystem::path> parts_to_take(const std::string& output, bool discard) {
   std::vector<std::filesystem::path> parts;
   std::error_code no_folder;
@@ -169,7 +170,7 @@ std::vector<std::filesystem::path> parts_to_take(const std::string& output, bool
   return {};
 }
 
-/// What the command is about, once its archive is read.
+/// The work of the command, once its archive is read.
 struct ComparisonTask {
   const CompareArguments& options;
   const std::string& command_line;
@@ -180,7 +181,8 @@ struct ComparisonTask {
   ComparisonOptions comparison;
 };
 
-/// Opens what is kept of the comparison in this folder. Throws InputError where it belongs to another one.
+/// Opens the comparison with the answers kept in this folder. Throws InputError if they belong to another
+/// comparison.
 std::unique_ptr<Comparison> open_comparison(const ComparisonTask& task, std::filesystem::path shards,
                                             Progress& progress) {
   const CompareArguments& options = task.options;
@@ -202,7 +204,7 @@ std::unique_ptr<Comparison> open_comparison(const ComparisonTask& task, std::fil
   }
 }
 
-/// What `work` returns; stopped, it says how to resume.
+/// Returns what `work` returns. If the work is stopped, the error says how to resume it.
 template <class Work>
 auto advised(const ComparisonTask& task, const Progress& progress, const Work& work) {
   try {
@@ -216,7 +218,7 @@ auto advised(const ComparisonTask& task, const Progress& progress, const Work& w
   }
 }
 
-/// A part of the loops, whose answers wait for the comparison of all of them.
+/// Assesses a part of the loops. Their answers wait for the comparison of all loops.
 std::string compare_part(const ComparisonTask& task, Progress& progress) {
   if (task.comparison.methods.empty())
     return "every loop has been assessed already\n";
@@ -230,7 +232,7 @@ std::string compare_part(const ComparisonTask& task, Progress& progress) {
                      part.number, part.of);
 }
 
-/// The overview as files, for those who write a paper.
+/// Writes the overview as files, for a paper.
 void write_overview(const CompareArguments& options, const Campaign& shown, const StudyFindings& findings) {
   if (!options.latex.empty())
     write_text(options.latex, comparison_latex(shown, findings));
@@ -239,8 +241,8 @@ void write_overview(const CompareArguments& options, const Campaign& shown, cons
                                            figure_format_of(options.figure)));
 }
 
-/// How often each of the methods that are asked for is right; the archive with all of them is written when an
-/// output is asked for.
+/// Says how often each method that was asked for is right. Writes the archive with all methods if an output
+/// is asked for.
 std::string found_text(const ComparisonTask& task, FailureTally& failures) {
   const CompareArguments& options = task.options;
   const auto text = [&](const Campaign& shown, const StudyFindings& findings) {
@@ -267,13 +269,13 @@ std::string found_text(const ComparisonTask& task, FailureTally& failures) {
   return text(task.campaign, findings);
 }
 
-/// Adds the answers that are missing to the campaign, and shows and writes what was found; no other
-/// comparison writes it meanwhile. Without an output the answers wait among the temporary files.
+/// Adds the missing answers to the campaign, and shows and writes what was found. No other comparison can
+/// write the output meanwhile. Without an output the answers wait among the temporary files.
 std::string compare_all(ComparisonTask& task, Progress& progress) {
   const std::string& output = task.options.output;
   std::optional<TemporaryFolder> temporary;
   std::unique_ptr<Comparison> comparison;  // its shards are locked until the archive is written
-  std::optional<ShardFolder> alone;        // where there is nothing to assess
+  std::optional<ShardFolder> alone;        // the lock if there is nothing to assess
   if (output.empty())
     temporary.emplace();
   if (!task.comparison.methods.empty())
@@ -317,7 +319,8 @@ std::string intended_text(const ComparisonTask& task) {
                              : output_text(options.output, kept_shards(options.output)));
 }
 
-/// Refuses an output that is an input or cannot be written, and parts that would have no place.
+/// Refuses an output that is an input or cannot be written, and a part without an output beside which it is
+/// kept.
 void require_output(const CompareArguments& options) {
   for (const std::string& file : {options.latex, options.figure})
     if (!file.empty())
@@ -336,8 +339,8 @@ void require_output(const CompareArguments& options) {
   require_output_archive(options.output, "archive");
 }
 
-/// The methods that are asked for: those named, those of files, and with neither all. Puts the verdicts of
-/// files beside those of the campaign.
+/// Returns the methods that are asked for: those named and those of files, or all methods if there are
+/// neither. Adds the verdicts in files to those of the campaign.
 std::vector<std::string> take_asked(Campaign& campaign, const CompareArguments& options,
                                     const std::string& command_line) {
   auto [given, table] = take_method_files(options.method_files);
@@ -353,9 +356,9 @@ std::vector<std::string> take_asked(Campaign& campaign, const CompareArguments& 
   return asked;
 }
 
-/// Assesses the loops of an archive by the methods that it does not have yet, prints how often each of those
-/// that are asked for is right, and writes the archive with them when an output is asked for. Loops that the
-/// archive has not kept are run again from (study, seed, index).
+/// Assesses the loops of an archive by the methods that it does not have yet, and prints how often each
+/// method that was asked for is right. Writes the archive with the new answers if an output is asked for.
+/// Loops that the archive has not kept are run again from (study, seed, index).
 ExitCode compare(const CompareArguments& options, const std::string& command_line) {
   ComparisonTask task{
       options, command_line, digest_of_archive(options.archive), stream_input(options.archive), {}, {}, {}};

@@ -30,7 +30,7 @@ double kept_share(const RunOptions& options, const StudyForecast& forecast) {
                                                                                   : 0.0;
 }
 
-/// The most that this process has held so far, pilot included.
+/// The peak memory of this process so far, pilot included.
 double peak_megabytes() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -60,8 +60,7 @@ std::string loops_text(const Study& study, std::int64_t experiments) {
                      calibration > 0 ? fmt::format(" and {} calibration loops", calibration) : "");
 }
 
-/// How long the studies take together, from a few of them, evenly spread, whose first loops are run and
-/// timed.
+/// How long the studies take together. Runs and times the first loops of a few of them, evenly spread.
 std::string together_time(const std::vector<const IntendedStudy*>& studies, const RunOptions& options,
                           const CampaignHooks& hooks) {
   constexpr std::size_t kMostTimed = 8;
@@ -75,7 +74,7 @@ std::string together_time(const std::vector<const IntendedStudy*>& studies, cons
                      .seconds;
       ++timed;
     } catch (const InputError&) {
-      continue;  // one that cannot be run takes no time to speak of
+      continue;  // a study that cannot be run takes hardly any time
     }
   }
   if (timed == 0)

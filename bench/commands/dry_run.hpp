@@ -13,10 +13,10 @@ class App;
 
 namespace mpm {
 
-// What a command says about its work: instead of it (--dry-run), or beside it (--verbose).
+// What a command says about its work: instead of doing it (--dry-run), or while doing it (--verbose).
 
 void add_dry_run(CLI::App& app, bool& dry_run);
-/// The same of a command that says no time.
+/// The same for a command that does not estimate the time.
 void add_untimed_dry_run(CLI::App& app, bool& dry_run);
 
 /// A requested run.
@@ -27,22 +27,23 @@ struct IntendedRun {
   const PartFolder* part = nullptr;  ///< none: the whole campaign
 };
 
-/// What the run would do: loops, methods, time, memory and files. The time is that of a few loops, which are
-/// run and timed; nothing is written. Errors: as run_campaign().
+/// Says what the run would do: loops, methods, time, memory and files. Runs and times a few loops to estimate
+/// the time; writes nothing. Errors: as run_campaign().
 std::string dry_run_text(const IntendedRun& intended, const CampaignHooks& hooks);
 
-/// The same of several studies, with the time that they take together: a few loops of some of them are run
-/// and timed.
+/// The same for several studies, with the time that they take together. Runs and times a few loops of some of
+/// the studies.
 std::string dry_run_text(const std::vector<IntendedStudy>& studies, const RunOptions& options,
                          const CampaignHooks& hooks);
 
-/// "solver: active-set, in 2 threads": who solves the problems, and how many loops run at once.
+/// "solver: active-set, 2 loops at once in threads": what solves the problems, and how many loops run at
+/// once.
 std::string solver_text(const Study& study, const RunOptions& options);
 
 /// "out.h5; until then shards in out.h5.shards".
 std::string output_text(const std::string& output, const std::filesystem::path& shards);
 
-/// The same of a part of a run.
+/// The same for a part of a run.
 std::string part_text(const std::string& output);
 
 }  // namespace mpm

@@ -35,16 +35,16 @@ namespace {
 struct ExportArguments {
   std::string archive;
   std::string table = "experiments";
-  std::optional<std::int64_t> index;  ///< of the experiment; all without
-  std::string output;                 ///< stdout when empty
+  std::optional<std::int64_t> index;  ///< of the experiment; none: all
+  std::string output;                 ///< empty: stdout
   bool blind = false;
   BlindParts parts;
-  std::string key;  ///< file for the key of the blind loops; none when empty
+  std::string key;  ///< file for the key of the blind loops; empty: none
   int jobs = 1;
   bool quiet = false;
 };
 
-/// The loops without the truth, into a folder.
+/// Writes the loops, without the truth, into a folder.
 ExitCode export_blind(const ExportArguments& options) {
   const Campaign campaign = stream_input(options.archive);
   if (options.parts.calibration && !campaign.study.calibration)

@@ -15,7 +15,7 @@ class FailureTally {
  public:
   void add(const StudyFindings& findings);
   void add(const std::string& method, const VerdictFailures& failures);
-  /// A warning for each method that failed.
+  /// Prints a warning for each method that failed.
   void tell(Progress& progress) const;
 
  private:

@@ -30,13 +30,13 @@ struct IdentifyArguments {
   std::string study;
   std::vector<std::string> steps;  ///< "NAME=SIZE"
   std::string step_response;       ///< file to write; empty: none
-  int samples = 0;                 ///< 0: those of the step responses of T0
+  int samples = 0;                 ///< 0: as many as the step responses of T0 have
   bool noise = false;
   bool json = false;
   bool quiet = false;
 };
 
-/// The steps of all inputs, from "NAME=SIZE" where it is said.
+/// The steps of all inputs: from "NAME=SIZE" if the user gives it, otherwise the usual step.
 Eigen::VectorXd step_sizes(const Study& study, const std::vector<std::string>& said) {
   const std::vector<std::string> names = input_names(study.plant);
   Eigen::VectorXd sizes = usual_steps(study);
@@ -62,7 +62,7 @@ Json list_of_numbers(const Eigen::VectorXd& vector) {
   return std::vector<double>(vector.begin(), vector.end());
 }
 
-/// With all digits.
+/// A channel as JSON, with all digits of its numbers.
 Json channel_json(const IdentifiedChannel& channel) {
   const TransferFunction& G = channel.fit.channel;
   return {{"cv", channel.cv},

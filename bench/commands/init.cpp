@@ -47,7 +47,7 @@ std::string asked(const std::string& question, const std::string& fallback) {
   return answer.empty() ? fallback : answer;
 }
 
-/// On a terminal, what the options have left open.
+/// Asks on a terminal for what the options have left open.
 void ask(SketchWords& words) {
   print_note(
       "A study of your plant, in deviations from the operating point. An empty answer takes what stands in "
@@ -81,7 +81,7 @@ void ask(SketchWords& words) {
       words.limits.push_back(fmt::format("{}={}", mv.name, limits));
 }
 
-/// Names the variables of the words by those of the model, where the words have none.
+/// Takes the names of variables from the model where the words have none.
 StepModel named_by(StepModel model, SketchWords& words) {
   SketchWords measured;
   measured.mds = words.mds;
@@ -102,13 +102,13 @@ void require_model(const SketchWords& words) {
                      "--gains with --time-constants, --channel for each channel, or --step-response");
 }
 
-/// Puts what a file of records shows into what the options leave open, and says what that was.
+/// Fills in from a file of records what the options leave open. Returns in words what it has filled in.
 std::vector<std::string> take_from_data(const DataSketch& data, StudySketch& sketch,
                                         const std::optional<StepModel>& steps, const SketchWords& words) {
   const auto rounded = [](double value, int digits) {
     return std::stod(fmt::format("{:.{}g}", value, digits));
   };
-  constexpr double kMove = 3.0;  // of a setpoint, in standard deviations of the record
+  constexpr double kMove = 3.0;  // move of a setpoint, in standard deviations of the record
   bool noise = false, moves = false;
   sketch.noise.assign(sketch.plant.cvs.size(), 0.0);
   for (std::size_t i = 0; i < sketch.plant.cvs.size(); ++i) {
@@ -125,7 +125,7 @@ std::vector<std::string> take_from_data(const DataSketch& data, StudySketch& ske
       moves = moves || !sketch.ranges[i];
     }
   }
-  constexpr double kOftener = 0.2;  // than the time constants ask for: the historian is faster than the MPC
+  constexpr double kOftener = 0.2;  // of the guessed sample time; if rows come faster, the MPC is slower
   const double guessed = parse_study(study_template(sketch), "study").controller.sample_time;
   const bool slow = steps ? data.step > guessed : data.step >= kOftener * guessed;
   const bool sampled = !words.sample_time && slow;
@@ -140,7 +140,7 @@ std::vector<std::string> take_from_data(const DataSketch& data, StudySketch& ske
   return taken;
 }
 
-/// A comment before [data] on what else is guessed from the file.
+/// The comment before [data] on what else is guessed from the file.
 std::string words_on_guesses(const DataSketch& data, const std::vector<std::string>& taken) {
   std::string text =
       taken.empty() ? "\n" : fmt::format("\n# From {} as well: {}.\n", data.file, fmt::join(taken, ", and "));
@@ -157,7 +157,7 @@ std::string words_on_guesses(const DataSketch& data, const std::vector<std::stri
   return text + "\n";
 }
 
-/// [data] alone, where nothing is said about the plant.
+/// Writes [data] alone, because the user says nothing about the plant.
 ExitCode init_data(const InitArguments& arguments) {
   PlantModel plant;
   plant.time_unit = arguments.words.time_unit;

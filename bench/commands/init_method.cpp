@@ -102,7 +102,7 @@ std::filesystem::path python_folder() {
              : root.parent_path() / "lib/python3/dist-packages";
 }
 
-/// What runs a method in the language of this file; empty: none is known.
+/// The command that runs a method in the language of this file; empty if the language is unknown.
 std::vector<std::string> command_of(const std::filesystem::path& file) {
   if (file.extension() == ".py")
     return {"python3", file.string()};
@@ -111,7 +111,7 @@ std::vector<std::string> command_of(const std::filesystem::path& file) {
   return {};
 }
 
-/// What prints 1 where the language of the file has something of this name, and 0 elsewhere.
+/// A command that prints 1 if the language of the file has a module or function of this name, otherwise 0.
 std::vector<std::string> question_of(const std::filesystem::path& file, const std::string& name) {
   if (file.extension() == ".py")
     return {"python3", "-I", "-c",
@@ -122,8 +122,8 @@ std::vector<std::string> question_of(const std::filesystem::path& file, const st
           "--eval",     fmt::format("printf ('%d\\n', any (exist ('{}') == [2, 3, 5, 103]))", name)};
 }
 
-/// Refuses a file that would hide a module of Python or a function of Octave: what imports or calls that
-/// would get the method.
+/// Refuses a file that would hide a module of Python or a function of Octave: code that imports or calls that
+/// would get the method instead.
 void require_unknown_name(const std::filesystem::path& file, const std::string& name) {
   constexpr double kPatience = 20.0;  // s
   const std::vector<std::string> question = question_of(file, name);
@@ -132,7 +132,7 @@ void require_unknown_name(const std::filesystem::path& file, const std::string& 
     ChildProcess program(question);
     if (program.receive(ChildProcess::in_seconds(kPatience)) != "1")
       return;
-  } catch (const ChildFailure&) {  // there is none here, and nobody knows
+  } catch (const ChildFailure&) {  // the language is not installed: the name cannot be checked
     return;
   }
   throw InputError("FILE",

@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 
 struct MergeArguments {
   std::string output;
-  std::vector<std::string> parts;  ///< empty: those beside the output
+  std::vector<std::string> parts;  ///< empty: the parts beside the output
   std::vector<std::string> method_files;
   bool missing = false;
   bool overwrite = false;
@@ -66,7 +66,8 @@ std::string missing_json(const PartMerge& parts) {
   return json_text(json);
 }
 
-/// Writes the archive. Throws std::runtime_error when something is missing: the other parts may be under way.
+/// Writes the archive of parts without missing loops, and prints a summary. Throws std::runtime_error if it
+/// is stopped.
 void write_merged(const MergeArguments& options, const PartMerge& parts, Progress& progress,
                   const std::string& command_line) {
   try {

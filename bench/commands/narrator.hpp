@@ -9,17 +9,17 @@
 
 namespace mpm {
 
-/// Tells on stderr what a run reads, decides and does, if the user asks for it by --verbose.
+/// Tells on stderr what a run reads, decides and does, if the user asks for it with --verbose.
 class Narrator {
  public:
   Narrator(bool verbose, Progress& progress) : verbose_(verbose), progress_(progress) {}
 
-  /// The study, which was found under `found_as`, what of it is not the default, and how and whereto it is
-  /// run.
+  /// Tells which study is run, which was found under `found_as`, what in it differs from the defaults, how it
+  /// is run, and where `output` goes.
   void say_what_is_run(const std::string& found_as, const Study& study, const RunOptions& options,
                        const std::string& output) const;
 
-  /// The same hooks, with the time of each stage said. It must outlive them.
+  /// Returns the same hooks, which also tell the time of each stage. This object must outlive them.
   CampaignHooks with_stages(CampaignHooks hooks);
 
  private:

@@ -40,7 +40,7 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest) {
 CLI::Validator number_between(double lowest, double highest) {
   const auto check = [lowest, highest](const std::string& word) {
     const std::optional<double> number = number_in(word);
-    const bool fits = number && *number >= lowest && *number <= highest;  // NaN is not
+    const bool fits = number && *number >= lowest && *number <= highest;  // NaN does not
     return fits ? std::string()
                 : fmt::format("found {}; allowed: a number from {} to {}", word, lowest, highest);
   };

@@ -12,7 +12,7 @@ namespace mpm {
 /// A whole number from `lowest` to `highest` in decimal digits: no octal 010, nothing that wraps around.
 CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 
-/// A number from `lowest` to `highest`, which NaN is not.
+/// A number from `lowest` to `highest`; refuses NaN.
 CLI::Validator number_between(double lowest, double highest);
 
 /// A number > 0, not infinite.
@@ -21,7 +21,8 @@ CLI::Validator positive_number();
 /// One of these words.
 CLI::Validator one_of(std::vector<std::string> words);
 
-/// An option that takes one of several words, each of which stands for a value; its value now is the default.
+/// Adds an option that takes one of several words, each of which stands for a value. The present value is the
+/// default.
 template <class Value>
 CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value,
                         const std::vector<std::pair<std::string, Value>>& choices,

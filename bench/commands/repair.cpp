@@ -83,7 +83,7 @@ std::vector<ExperimentRepair> all_repaired(const Campaign& campaign, const Chann
     try {
       repairs.push_back(*experiment_repair(campaign, record, choice, factory));
       progress.advance();
-    } catch (const InputError& error) {  // one channel that cannot be identified does not cost the others
+    } catch (const InputError& error) {  // a channel that cannot be identified does not stop the others
       progress.warn(fmt::format("experiment {}: {}", record.draw.index, error.what()));
       progress.advance(true);
     }

@@ -30,8 +30,8 @@ struct ReplayArguments {
   std::int64_t index = 0;
 };
 
-/// Without the methods that this program does not have, such as verdicts from outside: nobody can ask them
-/// again.
+/// The campaign without methods that this program does not have, such as verdicts from outside: it cannot ask
+/// them again, and says so.
 Campaign with_known_methods(Campaign campaign) {
   std::vector<std::string> kept, left_out;
   for (const std::string& method : method_names(campaign))
@@ -41,7 +41,7 @@ Campaign with_known_methods(Campaign campaign) {
   return with_methods(std::move(campaign), kept, std::nullopt);
 }
 
-/// As a campaign runs it: an exception makes a record `failed` with its text.
+/// Runs an experiment as a campaign does: an exception makes a record `failed` with its text.
 ExperimentRecord experiment_again(const Campaign& campaign, const BasisCase& basis,
                                   const QpSolverFactory& factory, std::int64_t index, StorePolicy store) {
   try {
@@ -57,7 +57,7 @@ ExitCode replay(const ReplayArguments& options) {
   const Campaign campaign = with_known_methods(stream_input(options.archive));
   const ExperimentRecord archived = experiment_of(campaign, options.index);
 
-  // From (study, seed, index) alone: the basis case is made again too.
+  // All comes from (study, seed, index) alone: the basis case is run again too.
   const QpSolverFactory factory = qp_solver_factory(campaign.info.solver);
   const BasisCase basis = run_basis_case(campaign.study, factory);
   const ExperimentRecord again = experiment_again(campaign, basis, factory, options.index,

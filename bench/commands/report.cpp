@@ -25,13 +25,13 @@ namespace {
 
 struct ReportArguments {
   std::vector<std::string> archives;  ///< one, or two for what changed from the first to the second
-  std::string output;                 ///< no page when empty
-  std::string figures;                ///< folder; no figures as files when empty
+  std::string output;                 ///< empty: no page
+  std::string figures;                ///< folder; empty: no figures as files
   std::string format = "svg";
 };
 
-/// The loops that the page draws. What is not in the archive is simulated again; where that would start a
-/// program that nobody has allowed, the page does without, and a note says so.
+/// The loops that the page draws. A loop that is not in the archive is simulated again. If that would start a
+/// program that nobody has allowed, the page goes without the loop, and a note says so.
 std::vector<LoopView> shown_loops(const Campaign& campaign) {
   std::vector<LoopView> views;
   std::string left_out;
@@ -49,7 +49,7 @@ std::vector<LoopView> shown_loops(const Campaign& campaign) {
   return views;
 }
 
-/// Two archives on one page.
+/// Writes two archives on one page.
 ExitCode report_change(const ReportArguments& options) {
   if (options.archives.size() > 2)
     throw InputError("ARCHIVE", fmt::format("{} archives", options.archives.size()),

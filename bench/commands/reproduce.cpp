@@ -35,11 +35,11 @@ namespace {
 
 struct ReproduceArguments {
   std::string tables = "all";
-  std::string output;  ///< no page when empty
+  std::string output;  ///< empty: no page
   bool json = false;
   std::vector<std::string> changes;  ///< --set, each KEY=VALUE
   std::optional<int> seeds;          ///< none: each table once, with the seeds of its studies
-  std::string shard;                 ///< which of the tables and seeds are run; empty: all of them, and shown
+  std::string shard;                 ///< which tables and seeds are run; empty: all are run and shown
   bool dry_run = false;
   bool quiet = false;
   RunOptions run;
@@ -62,7 +62,7 @@ void show(const ReproduceArguments& options, const std::vector<Table>& tables) {
   print_result(options.json ? reproduction_json(tables, options.changes) : document_text(document));
 }
 
-/// Runs the tables; stopped, it says how to resume.
+/// Runs the tables. If it is stopped, the error says how to resume.
 std::vector<std::vector<ReproducedTable>> run_tables(TableRuns runs, const ReproduceArguments& options,
                                                      const std::string& command_line) {
   Progress progress(options.quiet, "tables");
@@ -78,7 +78,7 @@ std::vector<std::vector<ReproducedTable>> run_tables(TableRuns runs, const Repro
   }
 }
 
-/// Whether something can be kept beside the page: beside a device or a pipe there is no place for it.
+/// Whether numbers can be kept beside the page: beside a device or a pipe there is no place for them.
 bool has_place(const std::string& output) {
   return !output.empty() && !is_stream(output);
 }
@@ -101,8 +101,8 @@ std::string intended_text(const TableRuns& runs, const ReproduceArguments& optio
                                           : fmt::format("{0}; until then {0}.tables", options.output));
 }
 
-/// Done even when verdicts differ: they are results. A part leaves its numbers only, which another call
-/// finds.
+/// Returns ExitCode::done even if verdicts differ: they are results. A part leaves only its numbers, which
+/// another call finds.
 ExitCode reproduce_tables(const ReproduceArguments& options, const std::string& command_line) {
   if (!options.output.empty())
     require_output_folder(options.output, "page");

@@ -59,7 +59,7 @@ struct RunArguments {
   bool is_part() const { return !shard.empty() || !range.empty(); }
 };
 
-/// The end of a message about a run that was not finished; empty when no shard is left to go on with.
+/// The end of a message about a run that was not finished; empty if there is no shard from which to resume.
 std::string how_to_resume(const RunArguments& options, const std::filesystem::path& shards,
                           std::string command_line) {
   if (shards_in(shards).empty())
@@ -71,17 +71,18 @@ std::string how_to_resume(const RunArguments& options, const std::filesystem::pa
   return how_to_go_on("in " + shards.string(), command_line);
 }
 
-/// What one should look at, without the advice, which `validate` gives.
+/// Prints the warnings about a study, without the advice that `validate` gives.
 void warn_of(const Study& study, const BasisCase& basis, Progress& progress) {
   std::vector<StudyWarning> warnings = study_warnings(study);
-  if (basis.healthy)  // otherwise the run is refused with what the self-check says, or the user knows it
+  if (basis.healthy)  // if not, the self-check refuses the run, or the user has allowed it
     for (StudyWarning& warning : basis_warnings(study, basis))
       warnings.push_back(std::move(warning));
   for (const StudyWarning& warning : warnings)
     progress.note(fmt::format("warning: {}: {}", warning.key, warning.found));
 }
 
-/// Of a nonlinear plant; the model of a linear one is exact, or its worlds say how far it is off.
+/// Tells how exact the model of a nonlinear plant is. That of a linear plant is exact, or its worlds say how
+/// far it is off.
 void tell_model_assumption(const Study& study, const BasisCase& basis, const QpSolverFactory& factory,
                            Progress& progress) {
   if (study.nonlinear && basis.trajectory.status == ControlStatus::ok)
@@ -142,8 +143,8 @@ void run_one_part(const RunArguments& options, const PartFolder& part, const Cam
                              part.part.loops.empty() ? "none" : to_string(part.part.loops), run));
 }
 
-/// Parts that lie beside the output and are of another run: `merge` refuses them beside this one, and no run
-/// takes them up.
+/// Warns of parts beside the output that belong to another run: `merge` refuses them together with those of
+/// this run, and this run does not use them.
 void warn_of_other_parts(const RunArguments& options, const Study& study, const RunOptions& run_options,
                          Progress& progress) {
   const std::filesystem::path folder = parts_folder_of(options.output);

@@ -16,7 +16,7 @@
 namespace mpm {
 namespace {
 
-/// A pipe is not opened: what was read of it would be gone.
+/// Whether a file is an archive. Does not open a pipe: what is read from it would be lost.
 bool is_archive(const std::string& file) {
   std::error_code no_status;
   if (!std::filesystem::is_regular_file(file, no_status))

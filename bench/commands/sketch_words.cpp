@@ -26,8 +26,8 @@ std::string trimmed(std::string_view text) {
              : std::string(text.substr(first, text.find_last_not_of(" \t") + 1 - first));
 }
 
-/// The pieces between any of these characters, without the blanks around them; those that are empty are left
-/// out.
+/// The pieces of a text between any of these characters, without the blanks around them. Empty pieces are
+/// left out.
 std::vector<std::string> pieces(std::string_view text, std::string_view between) {
   std::vector<std::string> found;
   while (!text.empty()) {
@@ -58,7 +58,7 @@ Eigen::VectorXd numbers_of(std::string_view text, const std::string& place) {
   return numbers;
 }
 
-/// "y1, y2", or "2" for y1 and y2.
+/// Reads variables, such as "y1, y2", or "2" for y1 and y2.
 std::vector<PlantModel::Variable> variables(const std::string& text, char letter, const std::string& option) {
   std::vector<std::string> names = pieces(text, " ,");
   constexpr int kMost = 200;
@@ -76,7 +76,7 @@ std::vector<PlantModel::Variable> variables(const std::string& text, char letter
   return list;
 }
 
-/// The place of a name in lists of variables, one behind the other.
+/// The place of a name in several lists of variables, counted through from the first list to the last.
 std::size_t place_of(const std::string& name,
                      const std::vector<const std::vector<PlantModel::Variable>*>& lists,
                      const std::string& option) {
@@ -125,7 +125,7 @@ TransferFunction transfer_function_of(const std::string& text, const std::string
   }
 }
 
-/// "1 2; 3 4": a row a CV, a column an MV or MD.
+/// Reads a matrix such as "1 2; 3 4": one row per CV, one column per MV or MD.
 Eigen::MatrixXd matrix_of(const std::string& text, const TransferMatrix& G, const std::string& option) {
   const std::vector<std::string> rows = pieces(text, ";");
   Eigen::MatrixXd matrix(G.rows(), G.cols());

@@ -14,14 +14,14 @@ struct SketchWords {
   std::string time_unit = "min";
   std::vector<std::string> units;                 ///< NAME=UNIT
   std::vector<std::string> channels;              ///< CV,INPUT=NUMERATOR/DENOMINATOR[@DEAD_TIME]
-  std::string gains, time_constants, dead_times;  ///< "1 2; 3 4": a row a CV, a column an MV or MD
+  std::string gains, time_constants, dead_times;  ///< "1 2; 3 4": one row per CV, one column per MV or MD
   std::optional<double> sample_time;
   std::vector<std::string> ranges, limits;  ///< NAME=LOW:HIGH
   std::vector<std::string> setpoints;       ///< NAME=SIZE
 };
 
-/// Reads them, for a study of this name. Channels win over matrices. Errors: InputError, which names the
-/// option.
+/// Reads these words into the sketch of a study of this name. Channels win over matrices. Errors: InputError,
+/// which names the option.
 StudySketch sketch_of(const SketchWords& words, const std::string& name);
 
 }  // namespace mpm

@@ -71,8 +71,8 @@ double step_interval_of(RecordColumns& columns, std::optional<double> stated) {
   return interval;
 }
 
-/// The digits of a number behind its point, less its power of ten, and those from its first one that is not 0
-/// on.
+/// Two counts of the digits of a number: those behind its point, less its power of ten, and those from its
+/// first nonzero digit on.
 std::pair<int, int> digits_of(const std::string& cell, char decimal) {
   const std::size_t end = std::min(cell.find_first_of("eE"), cell.size());
   const std::size_t point = std::min(cell.find(decimal), end), first = cell.find_first_of("123456789");
@@ -85,11 +85,12 @@ std::pair<int, int> digits_of(const std::string& cell, char decimal) {
   return {count(point) - power, count(first)};
 }
 
-/// What the coefficients in a column may be off by: half of the last digit that the column shows, whether it
-/// has so many behind the point or so many in all, within what a search can find and what is negligible.
+/// By how much the coefficients in a column may be off: half of the last digit that the column shows, whether
+/// it shows so many digits behind the point or so many in all. At least what a search can find, and at most
+/// what is negligible.
 Eigen::VectorXd tolerances_of(const RecordColumns& columns, std::size_t column,
                               const Eigen::VectorXd& coefficients) {
-  constexpr double kOfSearch = 1e-11;  // of the largest
+  constexpr double kOfSearch = 1e-11;  // of the largest coefficient
   constexpr double kHalf = 0.5 + 1e-9;
   int behind_point = 0, in_all = 1;
   for (const std::string& cell : columns.columns[column]) {
@@ -106,7 +107,7 @@ Eigen::VectorXd tolerances_of(const RecordColumns& columns, std::size_t column,
   return coefficients.unaryExpr(tolerance);
 }
 
-/// CV and input in "CV/INPUT".
+/// The CV and the input in a heading "CV/INPUT".
 std::pair<std::string, std::string> channel_in(const std::string& heading, const std::string& file) {
   const std::size_t slash = heading.find('/');
   const auto trimmed = [](std::string text) {
@@ -133,7 +134,7 @@ struct ChannelColumn {
   std::size_t column;
 };
 
-/// All columns but that of the time, before any of them is fitted.
+/// All columns except the time. All are checked before any of them is fitted.
 std::vector<ChannelColumn> channel_columns(const RecordColumns& columns, std::optional<std::size_t> time,
                                            const std::string& file) {
   std::vector<ChannelColumn> found;

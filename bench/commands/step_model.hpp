@@ -9,12 +9,12 @@
 
 namespace mpm {
 
-/// A model as dynamic matrix control has it.
+/// A model in the form of dynamic matrix control: coefficients of step responses.
 struct StepModel {
   struct Channel {
     std::string cv, input;
     StepResponseFit fit;
-    TransferFunction function;  ///< the fit, or the coefficients where it leaves more than is negligible
+    TransferFunction function;  ///< the fit, or the coefficients if its error is not negligible
     bool exact = false;         ///< the fit gives the coefficients in all of their digits
   };
 
@@ -23,18 +23,18 @@ struct StepModel {
   std::vector<Channel> channels;  ///< in the order of the columns
 
   std::vector<std::string> cvs() const;
-  /// But for these, in the order of the columns.
+  /// The inputs except these, in the order of the columns.
   std::vector<std::string> inputs_but(const std::vector<std::string>& mds) const;
-  /// Puts the channels where the plant has none. Errors: InputError for a variable that the plant does not
-  /// have.
+  /// Puts the channels into the plant where it has none. Errors: InputError for a variable that the plant
+  /// does not have.
   void put_into(PlantModel& plant) const;
-  /// Each fit and its error, a line a channel.
+  /// Each fit and its error, one line per channel.
   std::string report() const;
 };
 
-/// Reads a file of columns CV/INPUT, coefficients of the response to a step of 1, and the time between two of
-/// them: `interval`, or what a column `time` says. A first row at time 0 is left out. Errors: InputError,
-/// which names the file and the column.
+/// Reads a file with columns CV/INPUT, which have the coefficients of the response to a step of 1. The time
+/// between two coefficients is `interval`, or comes from a column `time`; a first row at time 0 is left out.
+/// Errors: InputError, which names the file and the column.
 StepModel read_step_model(const std::string& file, std::optional<double> interval);
 
 }  // namespace mpm

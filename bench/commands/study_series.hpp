@@ -12,7 +12,7 @@
 
 namespace mpm {
 
-/// One of the studies that a command runs one after the other, and keeps.
+/// One of the studies that a command runs one after the other and whose archives it keeps.
 struct IntendedStudy {
   std::string place;  ///< "cell 3 of 44"
   std::string name;
@@ -25,12 +25,12 @@ struct IntendedStudy {
 void require_archives(const std::vector<IntendedStudy>& studies, const std::filesystem::path& folder,
                       const RunOptions& options, bool overwrite);
 
-/// What a command makes of the run of the study at a place among them.
+/// What a command does with the run of the study at this place of the list.
 using TakeRun = std::function<void(std::size_t place, KeptRun run)>;
 
-/// Runs them, each unless its archive is there, and shows how far all of them have come. A study that cannot
-/// be run is a warning. Throws std::runtime_error, which says how to resume, where it is stopped; other
-/// errors: as run_unless_kept().
+/// Runs the studies, except those whose archive is there, and shows the progress of all of them. A study that
+/// cannot be run gives a warning. Throws std::runtime_error, which says how to resume, if it is stopped.
+/// Other errors: as run_unless_kept().
 void run_series(const std::vector<IntendedStudy>& studies, const RunOptions& options, Progress& progress,
                 const std::string& output, const std::string& command_line, const TakeRun& take);
 

@@ -47,18 +47,18 @@ struct SuiteArguments {
   std::string suite;
   std::string output;
   SuiteChoice choice;
-  std::string shard;  ///< which of the cells are run; empty: all of them, and the leaderboard
+  std::string shard;  ///< which cells are run; empty: all of them, and the leaderboard is made
   RunOptions run;
   std::vector<std::string> method_files;
-  std::string join;                    ///< "finished", "none" or a file; empty: as board_to_join() has it
-  std::vector<std::string> highlight;  ///< methods that stand out; empty: those of one's own that are joined
+  std::string join;                    ///< "finished", "none" or a file; empty: see board_to_join()
+  std::vector<std::string> highlight;  ///< methods that stand out; empty: the user's that join
   bool overwrite = false;
   bool dry_run = false;
   bool full = false;
   bool json = false;
   bool quiet = false;
 
-  /// Nothing is to be run: the finished board is asked for.
+  /// Whether nothing is to be run, because the user asks for the finished board.
   bool only_looks() const {
     return output.empty() && run.methods.empty() && method_files.empty() && !choice.seed &&
            !run.experiments && shard.empty() && !overwrite && !dry_run;
@@ -78,7 +78,7 @@ std::optional<FinishedBoard> board_to_join(const SuiteArguments& options, const 
   return read_board(by_default || options.join == "finished" ? finished : fs::path(options.join), suite);
 }
 
-/// Throws InputError for a method that the board does not have.
+/// Makes these methods stand out. Throws InputError for a method that the board does not have.
 void highlight(Leaderboard& board, const std::vector<std::string>& methods) {
   for (const std::string& method : methods)
     if (std::find(board.methods.begin(), board.methods.end(), method) == board.methods.end())
@@ -96,14 +96,15 @@ void show_board(const Leaderboard& board, const std::string& json, const SuiteAr
     print_result(fmt::format("The page: {}\n", (fs::path(options.output) / "leaderboard.html").string()));
 }
 
-/// Says what could not be joined.
+/// Returns the joined board, and warns of what could not be joined.
 Leaderboard joined_board(JoinedBoard joined, Progress& progress) {
   for (const std::string& note : joined.notes)
     progress.warn(note);
   return std::move(joined.board);
 }
 
-/// The finished board of the suite, without a run; with a named board its methods join.
+/// Shows the finished board of the suite, without a run. If a board is named, its methods join the finished
+/// one.
 ExitCode show_finished_board(const SuiteArguments& options, const Suite& suite, Progress& progress) {
   const fs::path path = finished_board_path(suite);
   std::error_code no_status;
@@ -123,7 +124,8 @@ ExitCode show_finished_board(const SuiteArguments& options, const Suite& suite, 
   return ExitCode::done;
 }
 
-/// The page, the figure and the tables. What has been computed is shown all the same without gnuplot.
+/// Writes the page, the figure and the tables. Without gnuplot it warns that there is no page, and the rest
+/// is still shown.
 void write_board(const fs::path& folder, const Leaderboard& board, Progress& progress) {
   write_text(folder / "leaderboard.csv", leaderboard_csv(board));
   write_text(folder / "leaderboard.tex", leaderboard_latex(board));
@@ -144,10 +146,10 @@ std::vector<const SuiteCell*> cells_of(const Suite& suite, const std::optional<P
   return cells;
 }
 
-/// Runs a suite, or what is missing of it, cell by cell, and shows its leaderboard, which is also left in the
-/// folder as a page, as JSON, CSV and LaTeX, and as a board that others can join. An archive that is there
-/// and is what this run would make of the cell is kept as it is, so that the same command resumes the suite,
-/// and the scores are those of a single run.
+/// Runs a suite, or what is missing of it, cell by cell, and shows its leaderboard. Writes the leaderboard
+/// into the folder as a page, as JSON, CSV and LaTeX, and as a board that others can join. Keeps an archive
+/// that is already what this run would make of the cell, so that the same command resumes the suite, and the
+/// scores are those of a single run.
 ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
   Suite suite = find_suite(options.suite, options.choice);
   Progress progress(options.quiet);
@@ -220,7 +222,7 @@ ExitCode run_suite(SuiteArguments options, const std::string& command_line) {
 void add_suite(CommandSet& commands) {
   const auto options = std::make_shared<SuiteArguments>();
   options->run.store = StorePolicy::none;  // loops are run again from (study, seed, index) when asked for
-  options->run.audit_share = 0.0;          // Ipopt answers where the active set does not, and checks nothing
+  options->run.audit_share = 0.0;  // Ipopt solves what the active-set method does not, and checks nothing
   CLI::App& app =
       commands.add("suite", "Run a suite of plants and families of experiments, and make its leaderboard",
                    [options, &commands] { return run_suite(*options, commands.command_line()); });

@@ -33,8 +33,8 @@ struct SummaryArguments {
   bool json = false;
 };
 
-/// The folders with what is done of a run that has written no archive: the one that is named, or those beside
-/// the archive that it will write. None when there is an archive, or nothing.
+/// The folders with the finished work of a run that has written no archive yet: the named folder, or those
+/// beside the named archive. None if the archive is there, or if nothing is.
 std::vector<std::string> unfinished_folders(const std::string& named) {
   std::error_code no_status;
   if (fs::is_directory(named, no_status))
@@ -47,7 +47,7 @@ std::vector<std::string> unfinished_folders(const std::string& named) {
   return folders;
 }
 
-/// The archive that a folder with shards or parts lies beside.
+/// The archive beside which the named folder of shards or parts lies; otherwise the name itself.
 std::string archive_of(const std::string& named) {
   fs::path path = fs::path(named).has_filename() ? fs::path(named) : fs::path(named).parent_path();
   return path.extension() == ".shards" || path.extension() == ".parts" ? path.replace_extension().string()

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 struct SweepArguments {
   std::string sweep;
   std::string output;
-  std::string shard;  ///< which of the studies are run; empty: all of them, and the table
+  std::string shard;  ///< which studies are run; empty: all of them, and the table is made
   RunOptions run;
   bool overwrite = false;
   bool dry_run = false;
@@ -43,8 +43,8 @@ std::string label(const SweepVariant& variant) {
   return variant.choice.empty() ? "as shipped" : fmt::format("{} = {}", variant.choice, variant.value);
 }
 
-/// Runs every study and writes its archive, one after the other, and at the end the table of all of them
-/// (`sweep.md`, and on stdout). A part of the studies leaves its archives only, which another call finds.
+/// Runs the studies one after the other and writes their archives, and at the end the table of all of them
+/// (`sweep.md`, and on stdout). A part of the studies leaves only its archives, which another call finds.
 ExitCode run_sweep(SweepArguments options, const std::string& command_line) {
   const Sweep sweep = find_sweep(options.sweep);
   options.run.cache = user_cache();
@@ -98,8 +98,7 @@ ExitCode run_sweep(SweepArguments options, const std::string& command_line) {
 void add_sweep(CommandSet& commands) {
   const auto options = std::make_shared<SweepArguments>();
   options->run.store = StorePolicy::none;
-  options->run.allow_unhealthy_basis =
-      true;  // marked in the table: how much a choice matters is the question
+  options->run.allow_unhealthy_basis = true;  // the table marks it: the question is how much a choice matters
   CLI::App& app =
       commands.add("sweep", "Run a study once for each value of its open choices, and make a table",
                    [options, &commands] { return run_sweep(*options, commands.command_line()); });

@@ -35,7 +35,7 @@ struct ValidateArguments {
   bool quiet = false;
 };
 
-/// What validate has found out of a study.
+/// What validate has found out about a study.
 struct Validation {
   StudyPilot pilot;
   std::vector<StudyWarning> warnings;
@@ -46,7 +46,7 @@ void append(std::vector<StudyWarning> more, std::vector<StudyWarning>& warnings)
   std::move(more.begin(), more.end(), std::back_inserter(warnings));
 }
 
-/// The basis case, and a pilot of the study where the basis case runs to its end.
+/// Runs the basis case and, if that runs to its end, a pilot of the study.
 Validation validated(const ValidateArguments& arguments, Progress& progress) {
   const Study study = find_study(arguments.study);
   Validation found;
@@ -57,7 +57,7 @@ Validation validated(const ValidateArguments& arguments, Progress& progress) {
   options.experiments.reset();
   try {
     found.pilot = run_pilot(study, options, loops, hooks_of(progress));
-  } catch (const UnhealthyBasis&) {  // which does not run to its end: the warnings may say why
+  } catch (const UnhealthyBasis&) {  // the basis case does not run to its end: the warnings may say why
     for (const StudyWarning& warning : found.warnings)
       progress.warn(to_string(warning));
     throw;
@@ -110,7 +110,7 @@ std::string validation_json(const Validation& found, int jobs) {
   return json_text(json);
 }
 
-/// How far the number of worlds lets rates be known.
+/// How exactly the number of worlds lets rates be known.
 std::string worlds_text(const StudyForecast& forecast) {
   std::string limits;
   if (forecast.loops_with_impact > 0)
