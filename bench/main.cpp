@@ -9,8 +9,8 @@
 namespace {
 
 /// The BLAS under Ipopt must not start threads: they would compete with the workers, and the workers are
-/// forked from this process. It reads its environment when it is loaded, so the program starts itself once
-/// more.
+/// forked from this process. The BLAS reads its environment when it is loaded, so the program sets the
+/// variable and starts itself once more.
 void use_single_threaded_blas(char** argv) {
   if (std::getenv("OPENBLAS_NUM_THREADS") != nullptr)
     return;

@@ -12,8 +12,8 @@ namespace mpm {
 /// line declares them, exit codes and environment.
 std::string manual_page(const CLI::App& program, const std::string& version);
 
-/// A script of bash that completes the commands of a program, their options, the names of the shipped
-/// studies, and files everywhere else.
+/// A bash script that completes the commands of a program, their options, the names of the shipped studies,
+/// and files everywhere else.
 std::string bash_completion(const CLI::App& program);
 
 }  // namespace mpm

@@ -13,7 +13,7 @@ namespace mpm {
 
 void print_result(std::string_view text) {
   const std::string plain = plain_text(text);
-  std::fwrite(plain.data(), 1, plain.size(), stdout);  // its error stays with the stream
+  std::fwrite(plain.data(), 1, plain.size(), stdout);  // the stream remembers an error
 }
 
 void print_note(std::string_view text) {
@@ -49,7 +49,7 @@ bool results_arrived() {
 void occupy_closed_streams() {
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
     while (::fcntl(stream, F_GETFD) < 0 &&
-           ::open("/dev/null", O_RDONLY) >= 0) {  // which refuses what is written
+           ::open("/dev/null", O_RDONLY) >= 0) {  // for reading only: writing fails
     }
 }
 

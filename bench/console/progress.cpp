@@ -91,7 +91,7 @@ void Progress::show() {
     const auto filled = static_cast<int>(kWidth * done_ / std::max<std::int64_t>(total_, 1));
     const std::string line =
         fmt::format("\r[{:<{}}] {}\033[K", std::string(static_cast<std::size_t>(filled), '#'), kWidth, text);
-    std::fputs(line.c_str(), stderr);  // with the control characters that rewrite a line
+    std::fputs(line.c_str(), stderr);  // not print_note(), which removes the control characters
     std::fflush(stderr);
     in_line_ = true;
     if (done_ >= total_)

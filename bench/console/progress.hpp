@@ -11,23 +11,24 @@
 
 namespace mpm {
 
-/// Long work as the user sees it, made once by a command: shows on stderr how far it has come (a line that is
-/// rewritten on a terminal, a plain line every now and then otherwise), and takes Ctrl-C and SIGTERM as a
-/// request to stop. Its end, also by an exception, ends the line. At most one at a time.
+/// Shows the progress of long work; a command makes one. Writes on stderr how far the work has come (on a
+/// terminal in a line that it rewrites, otherwise in a plain line every now and then), and takes Ctrl-C and
+/// SIGTERM as a request to stop. When it is destroyed, also by an exception, it ends the line. At most one at
+/// a time.
 class Progress {
  public:
-  /// `quiet`: shows nothing but warnings. The work is one of `what`, which must outlive it.
+  /// `quiet`: shows nothing but warnings. `what` names the items of the work and must outlive this object.
   explicit Progress(bool quiet, std::string_view what = "experiments");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// The work is one piece of several, and so many experiments follow in the pieces after the next one: the
-  /// time left is that of all of them.
+  /// Says that the work is done in several pieces, and that `later` experiments follow in the pieces after
+  /// the next one. The time left is then that of all pieces.
   void plan(std::int64_t later);
   /// Work of `total` experiments begins; `done` of them were done before and do not count in the rate.
   void begin(std::int64_t total, std::int64_t done = 0);
-  /// One more is done; `failed` when it is worth mentioning. One call at a time.
+  /// One more experiment is done; `failed`: it failed, which is worth mentioning. One call at a time.
   void advance(bool failed = false);
 
   /// Prints a line, unless quiet.
@@ -35,7 +36,7 @@ class Progress {
   /// The same, quiet or not.
   void warn(const std::string& text);
 
-  /// From any thread.
+  /// Whether the work is to stop. May be called from any thread.
   bool stop_requested() const { return signals_.received(); }
   /// The reason why the work stopped, and where: "SIGINT: stopped when ...".
   std::string explain(const Interrupted& error) const;
@@ -52,8 +53,8 @@ class Progress {
   const bool quiet_, terminal_;
   const std::string_view what_;
   std::int64_t total_ = 0, earlier_ = 0, done_ = 0, failed_ = 0;
-  std::int64_t later_ = 0;     ///< of pieces that follow
-  std::int64_t finished_ = 0;  ///< of pieces that have ended
+  std::int64_t later_ = 0;     ///< experiments of pieces that follow
+  std::int64_t finished_ = 0;  ///< experiments of pieces that have ended
   bool in_pieces_ = false;
   Clock::time_point start_, shown_;
   bool in_line_ = false;  ///< the line on the terminal is not ended

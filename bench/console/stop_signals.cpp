@@ -20,14 +20,14 @@
 namespace mpm {
 namespace {
 
-/// The signal that has come, 0 before. A handler gets nothing but the number of its signal, so that this
-/// cannot be a member.
+/// The signal that has come, 0 before. A handler gets nothing but the number of its signal, so this cannot be
+/// a member.
 std::atomic<int> received_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);  // else not allowed in a handler
-/// Whose signals these are: a process that is forked leaves its end to its parent.
+/// The process that ends itself after a signal: processes that it forks leave their end to it.
 pid_t flag_owner = 0;
 
-constexpr int kServedProcessEnded = -1;  // in the place of a signal
+constexpr int kServedProcessEnded = -1;  // a value of received_signal
 constexpr std::chrono::milliseconds kPatience(1700);
 constexpr itimerval kTimer{{0, 0}, {kPatience.count() / 1000, 1000 * (kPatience.count() % 1000)}};
 constexpr itimerval kNoTimer{};
@@ -48,7 +48,8 @@ void give_up(int /*signal*/) {
   ::_exit(static_cast<int>(ExitCode::not_finished));
 }
 
-/// Waits for the end of this process; -1: it has ended.
+/// Waits for the end of the process with this pidfd (-1: it has ended), requests a stop, and gives up after
+/// kPatience.
 void watch(int process) {
   pollfd watched{process, POLLIN, 0};
   while (process >= 0 && ::poll(&watched, 1, -1) < 0 && errno == EINTR) {
@@ -58,7 +59,7 @@ void watch(int process) {
   give_up(0);
 }
 
-/// Returns what was in force before.
+/// Installs a handler for the next such signal. Returns the action that was in force before.
 struct sigaction install(int signal, void (*handler)(int)) {
   struct sigaction action {};
   struct sigaction before {};

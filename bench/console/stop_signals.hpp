@@ -6,17 +6,17 @@
 
 namespace mpm {
 
-/// Turns Ctrl-C (SIGINT) and SIGTERM into a request to stop, for as long as it lives. Also where the
-/// caller of the program ignores them: a shell does so with the SIGINT of background jobs in a script, and
-/// whoever sends one to such a job means it.
+/// Turns Ctrl-C (SIGINT) and SIGTERM into a request to stop, as long as the object lives. It does so even if
+/// the caller of the program ignores these signals: a shell ignores the SIGINT of background jobs in a
+/// script, but whoever sends one to such a job means it.
 ///
-/// The first of each is noted only; the second one finds the default action again and ends the process at
-/// once. Processes that are forked meanwhile inherit this: a Ctrl-C goes to them too, and must leave it to
-/// their parent when they end.
+/// The first signal of each kind is only noted; the second one finds the default action again and ends the
+/// process at once. Processes that are forked meanwhile inherit these handlers, because a Ctrl-C goes to them
+/// too, and only their parent may decide when they end.
 ///
-/// Work that has not ended 1.7 s after the first is given up: the process says so and ends at once, with the
-/// exit code of a command that did not finish. It leaves what a killed one leaves. At most one object at a
-/// time.
+/// Work that has not ended 1.7 s after the first signal is given up: the process says so and ends at once,
+/// with the exit code of a command that did not finish. It leaves behind what a killed process leaves. At
+/// most one object at a time.
 class StopSignals {
  public:
   StopSignals();
@@ -27,7 +27,7 @@ class StopSignals {
   /// Whether one of the signals has come. From any thread.
   bool received() const;
 
-  /// "SIGINT", "SIGTERM", or that the process that this one serves has ended; empty when nothing has come.
+  /// "SIGINT", "SIGTERM", or a text which says that the served process has ended; empty if nothing has come.
   std::string_view name() const;
 
  private:
@@ -36,11 +36,12 @@ class StopSignals {
   struct sigaction alarm_ {};
 };
 
-/// A process that starts this program for itself alone says so in the variable MPMBENCH_SERVES of the
-/// environment: "PID PID-NAMESPACE", the second one as /proc/PID/ns/pid has it. From this call on the end of
-/// that process is a request to stop, too, and this one ends 1.7 s after it as above, whether a StopSignals
-/// lives or not. A thread waits for it, which holds no lock when others fork. Does nothing without the
-/// variable, or with that of another namespace. Errors: std::system_error when there is no thread.
+/// Makes the end of the process that this one serves a request to stop, too. A process that starts this
+/// program for itself alone sets the environment variable MPMBENCH_SERVES to "PID PID-NAMESPACE", the
+/// namespace as in /proc/PID/ns/pid. If that process ends after this call, this one ends 1.7 s later as
+/// above, whether a StopSignals lives or not. A thread waits for it; that thread holds no lock when others
+/// fork. Does nothing without the variable, or if it names another namespace. Errors: std::system_error if no
+/// thread can be made.
 void stop_with_served_process();
 
 }  // namespace mpm
