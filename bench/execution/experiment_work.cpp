@@ -75,7 +75,7 @@ void ExperimentWork::audit(ExperimentOutcome& outcome) {
   const double start = thread_seconds();
   if (!auditor_)
     auditor_.emplace(study_, qp_solver_factory("ipopt"));
-  std::optional<Auditor> own;  // weights are in the structure of a problem
+  std::optional<Auditor> own;  // for other weights, which are part of the structure of a problem
   if (outcome.record.draw.tuning)
     own.emplace(with_tuning(study_, outcome.record.draw), qp_solver_factory("ipopt"));
   for (const AuditSample& sample : outcome.samples)

@@ -13,18 +13,18 @@ namespace mpm {
 /// The work of one worker: runs experiments and audits steps. Belongs to one thread or process.
 class ExperimentWork {
  public:
-  /// Experiments of `study`; the methods have learnt from the basis case of `basis_study`. All but `factory`
-  /// must outlive it, which makes the solvers of the controllers: that of `options.solver`, or the part of it
-  /// that may run in threads.
+  /// Runs experiments of `study` with methods that have learnt from the basis case of `basis_study`.
+  /// `factory` makes the solvers of the controllers: that of `options.solver`, or the part of it that may run
+  /// in threads. Everything but `factory` must outlive this object.
   ExperimentWork(const Study& study, const Study& basis_study, const BasisCase& basis,
                  const RunOptions& options, const QpSolverFactory& factory);
 
-  /// Experiment `index` without its audits. An exception makes a record `failed` with its text, unless the
-  /// surroundings failed (is_of_surroundings()): that is thrown.
+  /// Runs experiment `index` without its audits. An exception makes a record `failed` with its text. Only
+  /// BrokenPromise and failures of the surroundings (is_of_surroundings()) are thrown.
   ExperimentOutcome run(std::int64_t index);
 
-  /// Has these of its methods assess an experiment with status ok that was run before and has its loop, and
-  /// puts their answers in their places. Errors: as run().
+  /// Assesses an experiment by these of its methods, and puts their answers in their places. The experiment
+  /// was run before, has the status ok and has its loop. Errors: as run().
   void assess(ExperimentRecord& record, const std::vector<std::string>& methods);
 
   /// Audits the samples of an outcome. Calls Ipopt.

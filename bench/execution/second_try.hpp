@@ -6,8 +6,8 @@
 
 namespace mpm {
 
-/// What `work` returns. When its surroundings fail it (is_of_surroundings()), it is done once more, after
-/// `prepare` has been told why; what happens then is thrown.
+/// Returns what `work` returns. If the surroundings of the work fail (is_of_surroundings()), tells `prepare`
+/// why and does the work once more. Throws what goes wrong then.
 template <class Work, class Prepare>
 auto second_try(const Work& work, const Prepare& prepare) {
   try {

@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// Says whether work is to stop; asked by several threads at once. An empty one never says so.
+/// Says whether work is to stop; several threads may ask at once. If it is empty, work never stops.
 using StopRequest = std::function<bool()>;
 
 inline bool requested(const StopRequest& stop) {

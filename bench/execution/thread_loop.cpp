@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// Throws std::runtime_error when `threads` threads cannot exist at once: libgomp ends the process then.
+/// Throws std::runtime_error if `threads` threads cannot exist at once: libgomp would end the process.
 void require_threads(int threads) {
   std::mutex gate;
   std::unique_lock closed(gate);
@@ -45,7 +45,7 @@ class ReleasedThreads {
 
 void for_each_in_threads(std::size_t count, int threads,
                          const std::function<void(std::size_t index, std::size_t thread)>& body) {
-  std::exception_ptr failure;                     // none may leave a thread
+  std::exception_ptr failure;                     // no exception may leave a thread
   std::atomic<std::size_t> first_failure{count};  // only calls before it can still matter
   require_threads(threads);
   const ReleasedThreads release;

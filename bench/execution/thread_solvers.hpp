@@ -6,8 +6,9 @@
 
 namespace mpm {
 
-/// In as many threads as `run` has jobs, where its solver and the study let it (runs_in_threads()). A call
-/// that needs Ipopt, which has no threads, is made again after the others.
+/// Makes calls in as many threads as `run` has jobs, if its solver and the study allow threads
+/// (runs_in_threads()). A call that needs Ipopt, which must not run in threads, is made again after the
+/// others.
 ForEachWithSolver in_threads(const Study& study, const RunOptions& run);
 
 }  // namespace mpm

@@ -11,10 +11,10 @@
 
 namespace mpm {
 
-/// The worker of one thread. Ipopt may run in one thread of a process only, so that a thread has the
-/// active-set method. With worker processes that have Ipopt (`leaves`) it leaves them a loop as a whole when
-/// any problem needs Ipopt: one of the loop itself, of those that its truth asks for, or of those that a
-/// method simulates.
+/// The worker of one thread. Ipopt may run in only one thread of a process, so a thread has the active-set
+/// method. If there are worker processes with Ipopt (`leaves`), the thread leaves them a whole loop as soon
+/// as any problem needs Ipopt: a problem of the loop itself, of the loops that its truth asks for, or of the
+/// loops that a method simulates.
 template <class Worker>
 class ThreadWorker {
  public:
@@ -24,17 +24,17 @@ class ThreadWorker {
   ThreadWorker(const ThreadWorker&) = delete;
   ThreadWorker& operator=(const ThreadWorker&) = delete;
 
-  /// What run(worker) returns; none: a process has to run it.
+  /// Returns what run(worker) returns; none if a process has to run the loop.
   template <class Run>
   auto run(Run run) -> std::optional<decltype(run(std::declval<Worker&>()))> {
     if (worker_ == nullptr)
       make_worker();
-    if (left_ > 0)  // what it has learnt from needs Ipopt
+    if (left_ > 0)  // the worker needed Ipopt when it was made
       return std::nullopt;
     auto result = run(*worker_);
     if (left_ == 0)
       return result;
-    worker_.reset();  // it may have learnt from this loop what it keeps for others of its world
+    worker_.reset();  // it may have learnt from this loop and would use that for others of its world
     return std::nullopt;
   }
 

@@ -23,7 +23,7 @@
 namespace mpm {
 namespace {
 
-/// Header of a message: its length and, for an answer, whether it is one.
+/// Header of a message: its length and, if it comes from a worker, how the task ended.
 struct Header {
   TaskEnd end;
   std::int64_t size;
@@ -101,7 +101,7 @@ class WorkerPool::Worker {
     }
   }
 
-  /// A worker that is gone shows when its answer is read.
+  /// Sends a request. If the worker is gone, this shows when its answer is read.
   void start(std::int64_t task, const std::string& request) {
     task_ = task;
     send_message(socket_, request);
@@ -163,7 +163,7 @@ void WorkerPool::start(std::int64_t id, const std::string& request) {
 }
 
 TaskResult WorkerPool::wait() {
-  constexpr std::chrono::milliseconds kForever(-1);  // as poll() has it
+  constexpr std::chrono::milliseconds kForever(-1);  // no limit, as for poll()
   for (;;)
     if (std::optional<TaskResult> result = wait_for(kForever))
       return std::move(*result);
@@ -172,7 +172,7 @@ TaskResult WorkerPool::wait() {
 std::optional<TaskResult> WorkerPool::wait_for(std::chrono::milliseconds longest) {
   assert(has_busy());
   std::vector<pollfd> watched(workers_.size());
-  for (std::size_t w = 0; w < workers_.size(); ++w)  // poll() passes over negative descriptors
+  for (std::size_t w = 0; w < workers_.size(); ++w)  // poll() ignores negative descriptors
     watched[w] = {workers_[w]->idle() ? -1 : workers_[w]->socket(), POLLIN, 0};
   const int count = ::poll(watched.data(), watched.size(), static_cast<int>(longest.count()));
   if (count < 0 && errno != EINTR)
@@ -187,7 +187,7 @@ std::optional<TaskResult> WorkerPool::wait_for(std::chrono::milliseconds longest
 
 TaskResult WorkerPool::finish(std::size_t position) {
   TaskResult result = workers_[position]->finish();
-  if (!workers_[position]->alive() || result.end == TaskEnd::surroundings) {  // whose state nobody knows
+  if (!workers_[position]->alive() || result.end == TaskEnd::surroundings) {  // nobody knows its state
     workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(position));
     workers_.push_back(std::make_unique<Worker>(work_, workers_));
   }

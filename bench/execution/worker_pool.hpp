@@ -15,7 +15,7 @@ namespace mpm {
 enum class TaskEnd : std::int64_t {
   answered,
   crashed,      ///< the work threw, or its process ended, by a fault of its own
-  surroundings  ///< neither: is_of_surroundings(), ProcessEnd::from_outside
+  surroundings  ///< the same, but not by its own fault: is_of_surroundings(), ProcessEnd::from_outside
 };
 
 /// The outcome of one task.
@@ -36,8 +36,9 @@ class WorkerPool {
  public:
   using Work = std::function<std::string(const std::string& request)>;
 
-  /// `work` runs in a worker; an exception in it is delivered as such an end, with its text.
-  /// Throws std::system_error when no process or socket can be made, as do the members that replace one.
+  /// `work` runs in a worker; an exception in it is delivered as a TaskResult that did not answer, with its
+  /// text. Throws std::system_error if no process or socket can be made, as do the members that replace a
+  /// worker.
   WorkerPool(int jobs, Work work);
   ~WorkerPool();  ///< ends the workers, whatever they are doing
   WorkerPool(const WorkerPool&) = delete;
@@ -49,7 +50,7 @@ class WorkerPool {
   /// Gives a request to an idle worker; there must be one. `id` comes back with the result.
   void start(std::int64_t id, const std::string& request);
 
-  /// The next result, in the order in which they arrive; blocks. Some task must be under way.
+  /// The next result, in the order in which results arrive; blocks. Some task must be under way.
   TaskResult wait();
 
   /// The same, but none when no result arrives within `longest` or a signal arrives first.
@@ -64,9 +65,9 @@ class WorkerPool {
   std::vector<std::unique_ptr<Worker>> workers_;
 };
 
-/// The next result, or none after a short while, so that the caller can look whether it is to stop. A worker
-/// that dies after a stop was requested may have died of the same signal: that says nothing about its task,
-/// and is no result.
+/// The next result, or none after a short while, so that the caller can check whether to stop. A worker that
+/// dies after a stop was requested may have died of the same signal. That says nothing about its task, so it
+/// counts as no result.
 std::optional<TaskResult> next_finding(WorkerPool& pool, const StopRequest& stop);
 
 }  // namespace mpm

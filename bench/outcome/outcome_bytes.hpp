@@ -18,22 +18,22 @@ struct ExperimentOutcome {
   double audit_seconds = 0.0;  ///< processor time
 };
 
-/// Outcomes of the experiments of one study as bytes, for the way between a process and its workers, and into
-/// shards.
+/// Converts outcomes of the experiments of one study to bytes and back, to pass them between a process and
+/// its workers, and to store them in shards.
 class OutcomeBytes {
  public:
-  /// For the methods of the study, which must outlive it.
+  /// For the methods of the study, which must outlive this object.
   explicit OutcomeBytes(const Study& study);
   /// For these methods.
   OutcomeBytes(const Study& study, const AssessmentForms& forms);
 
   std::string to_bytes(const ExperimentOutcome& outcome) const;
 
-  /// The outcome again. Throws std::runtime_error when the bytes are too short or too long, InputError for an
-  /// experiment that the study does not have.
+  /// The outcome that these bytes were made from. Throws std::runtime_error if the bytes are too short or too
+  /// long, InputError for an experiment that the study does not have.
   ExperimentOutcome from_bytes(std::string_view bytes) const;
 
-  /// What of their records is not the same, by name.
+  /// The names of what differs between the records of two outcomes.
   std::vector<std::string> differences(const ExperimentOutcome& one, const ExperimentOutcome& other) const {
     return records_.differences(one.record, other.record);
   }
