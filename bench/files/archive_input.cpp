@@ -15,9 +15,9 @@
 namespace mpm {
 namespace {
 
-/// The file of an archive whose records are read again and again. Commands that put another one in its place
-/// leave it as it is; what else writes into it would be read as records. A pipe, which its reader will
-/// refuse, is not waited for.
+/// The file of an archive whose records are read again and again. A command that replaces the archive puts a
+/// new file in its place and leaves this one as it is; anything else that writes into this file would be read
+/// as records. Does not wait for a pipe, which its reader will refuse.
 class WatchedFile {
  public:
   explicit WatchedFile(const std::string& path)
@@ -29,7 +29,7 @@ class WatchedFile {
   WatchedFile(const WatchedFile&) = delete;
   WatchedFile& operator=(const WatchedFile&) = delete;
 
-  /// Throws ArchiveError.
+  /// Throws ArchiveError if the file has changed.
   void require_unchanged() const {
     const struct ::stat status = now();
     if (status.st_size != then_.st_size || status.st_mtim.tv_sec != then_.st_mtim.tv_sec ||
@@ -48,11 +48,11 @@ class WatchedFile {
   }
 
   std::string path_;
-  int descriptor_;  // none of a file that its reader will refuse
+  int descriptor_;  // -1 if there is no file: its reader will say so
   struct ::stat then_;
 };
 
-/// What `read` returns, with its errors as those of an archive that a command was given.
+/// Returns what `read` returns; turns its ArchiveError into BadArchive.
 template <class Read>
 auto as_input(Read read) {
   try {
@@ -74,7 +74,7 @@ Campaign stream_input(const std::string& archive) {
       try {
         return read();
       } catch (const std::exception&) {
-        file->require_unchanged();  // or else it is as bad as that says
+        file->require_unchanged();  // unless this throws, the archive is as bad as that error says
         throw;
       }
     });

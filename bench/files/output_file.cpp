@@ -16,7 +16,7 @@ void require_output_folder(const std::filesystem::path& output, std::string_view
   const auto refuse = [&](const char* why) {
     throw ArchiveError(fmt::format("{}: no {} can be written: {}", output.string(), what, why));
   };
-  if (is_stream(output)) {  // nothing is made in its folder, which may be anybody's, as /dev
+  if (is_stream(output)) {  // nothing is made in its folder, which may be anybody's, such as /dev
     if (::access(output.c_str(), W_OK) != 0)
       refuse("it is not writable");
     return;
@@ -34,7 +34,7 @@ void require_output_folder(const std::filesystem::path& output, std::string_view
 
 void require_no_input(const std::string& option, const std::filesystem::path& output,
                       const std::vector<std::string>& inputs) {
-  std::error_code error;  // one that is not there is no file of the other name
+  std::error_code error;  // an output that does not exist is none of the inputs
   for (const std::string& input : inputs)
     if (std::filesystem::equivalent(output, input, error) && !is_stream(output))
       throw InputError(option, fmt::format("{}, which the command reads", output.string()),

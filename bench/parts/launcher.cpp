@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-/// The number in a variable; none when it is not set. Throws InputError when it is something else.
+/// The number in a variable; none if the variable is not set. Throws InputError if its value is no number.
 std::optional<std::int64_t> number_of(const Environment& environment, const char* name) {
   const std::optional<std::string> text = environment(name);
   if (!text)
@@ -24,26 +24,26 @@ std::optional<std::int64_t> number_of(const Environment& environment, const char
   return number;
 }
 
-/// How many tasks a launcher may have: their products stay numbers.
+/// The most tasks that a launcher may have, so that products of such numbers do not overflow.
 constexpr std::int64_t kMostTasks = std::numeric_limits<std::int32_t>::max();
 
-/// What starts several processes and tells each its number.
+/// A program that starts several processes and tells each its number, in these variables.
 struct Launcher {
   const char* name;
   const char* number;
-  const char* size;  ///< how many there are; null: it does not say
+  const char* size;  ///< how many processes there are; null: it does not say
 };
 
-/// Those that start processes side by side, which they number from 0 on.
+/// Launchers that start processes side by side and number them from 0 on.
 constexpr Launcher kRanks[] = {{"rank {} of {} of Open MPI", "OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"},
                                {"rank {} of {} of MPI", "PMI_RANK", "PMI_SIZE"},
                                {"task {} of {} of srun", "SLURM_PROCID", "SLURM_STEP_NUM_TASKS"}};
 
-/// Those that start jobs, each of which may be several processes.
+/// Launchers that start jobs, each of which may be several processes.
 constexpr Launcher kArray{"task {} of {} of a Slurm array", "SLURM_ARRAY_TASK_ID", "SLURM_ARRAY_TASK_COUNT"};
 constexpr Launcher kPods{"pod {} of {} of a Kubernetes job", "JOB_COMPLETION_INDEX", nullptr};
 
-/// Of tasks that are numbered from `first` on, `step` apart.
+/// The part of task `number` among `of` tasks, which are numbered from `first` on, `step` apart.
 PartNumber part_by(const Launcher& launcher, std::int64_t number, std::int64_t of, std::int64_t first = 0,
                    std::int64_t step = 1) {
   const std::int64_t place = (number - first) / step;
@@ -70,8 +70,8 @@ std::optional<PartNumber> rank_of(const Environment& environment) {
                    "`completions` of the job");
 }
 
-/// A whole array, A-B or A-B:STEP, is counted as it is. Where only some of N tasks run, they have the numbers
-/// of an array 1-N, or of one from 0 on when task 0 is among them.
+/// The part of a task of an array. A whole array, A-B or A-B:STEP, is counted as it is. If only some of N
+/// tasks run, they have the numbers of an array 1-N, or of an array 0-(N-1) if the array begins with task 0.
 PartNumber array_task(const Environment& environment, std::int64_t number,
                       const std::optional<std::int64_t>& given) {
   const auto count = number_of(environment, kArray.size);

@@ -19,7 +19,7 @@ std::optional<LoopRange> range_in(std::string_view text) {
   return first && end ? std::optional(LoopRange{*first, *end}) : std::nullopt;
 }
 
-/// Puts a range behind others, as one with the last where they touch.
+/// Appends a range to others. If it touches the last one, extends that one instead.
 void append(LoopRanges& ranges, const LoopRange& next) {
   if (!ranges.empty() && ranges.back().end == next.first)
     ranges.back().end = next.end;
@@ -72,7 +72,7 @@ std::int64_t size_of(const LoopRanges& ranges) {
 
 LoopRanges piece_of(const LoopRanges& ranges, std::int64_t number, std::int64_t of) {
   const std::int64_t size = size_of(ranges);
-  const auto bound = [&](std::int64_t k) {  // size * k / of, which may be more than a number holds
+  const auto bound = [&](std::int64_t k) {  // size * k / of, without a product that may overflow
     return size / of * k + size % of * k / of;
   };
   std::int64_t skip = bound(number - 1), left = bound(number) - skip;

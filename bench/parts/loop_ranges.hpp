@@ -15,23 +15,23 @@ struct LoopRange {
   bool operator==(const LoopRange&) const = default;
 };
 
-/// In ascending order, none of them empty, none beside the next.
+/// Ranges in ascending order. None is empty, and none touches the next.
 using LoopRanges = std::vector<LoopRange>;
 
 /// Reads "A:B,C:D": the loops A to B - 1, and C to D - 1. Throws InputError unless it is such a text with
 /// 0 <= A < B <= C < D ... <= `count`.
 LoopRanges parse_loop_ranges(std::string_view text, std::int64_t count);
 
-/// The reverse: what parse_loop_ranges() reads. Empty for no loop.
+/// The text from which parse_loop_ranges() reads these ranges; empty if they have no loop.
 std::string to_string(const LoopRanges& ranges);
 
-/// Indices in ascending order as ranges.
+/// Converts indices in ascending order to ranges.
 LoopRanges ranges_of(const std::vector<std::int64_t>& indices);
 
 std::int64_t size_of(const LoopRanges& ranges);
 
-/// Number `number` (from 1 on) of `of` pieces of consecutive loops, which differ by one loop at most in their
-/// length and are together all of `ranges`. Without a loop where there are fewer loops than pieces.
+/// Piece `number` (from 1 on) of `of` pieces of consecutive loops. The pieces together are all of `ranges`,
+/// and their lengths differ by at most one loop. If there are fewer loops than pieces, some pieces are empty.
 LoopRanges piece_of(const LoopRanges& ranges, std::int64_t number, std::int64_t of);
 
 /// The loops in these ranges, one by one.

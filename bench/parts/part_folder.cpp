@@ -80,7 +80,7 @@ std::string part_name(const std::string& range, const std::optional<PartNumber>&
   std::string name = range;
   std::replace(name.begin(), name.end(), ':', '-');
   std::replace(name.begin(), name.end(), ',', '+');
-  constexpr std::size_t kLongest = 100;  // of a name of a file, with room for the rest
+  constexpr std::size_t kLongest = 100;  // limit of the ranges in a file name, with room for the rest
   if (name.size() > kLongest)
     name = fmt::format("{}-{}", name.substr(0, name.find('+')), digest_of(range));
   if (number)

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// The whole number that the whole text says; none for any other text. 010, which some take for eight, is
-/// none.
+/// The whole number in a text that has nothing else; none for any other text. 010, which some read as eight,
+/// is not accepted.
 template <class Number = std::int64_t>
 std::optional<Number> whole_number_in(std::string_view text) {
   if (text.size() > 1 && text.front() == '0')
