@@ -29,11 +29,11 @@ void register_qp_benchmarks(const std::vector<QpSequence>& sequences);
 /// | controller_share | the rest of it: the steps of the controller and the noise added      |
 void register_loop_benchmarks(const Study& study);
 
-/// Registers the benchmarks of what else a study is made of,
+/// Registers the benchmarks of the other parts of a study,
 ///     sensitivity/<back end>     T0 (appendix A3)
 ///     diagnosis                  the chain of one loop, nominal outputs included
 ///     study/<experiments>        basis case and the first experiments, one process, back end active-set
-/// `study` must outlive the benchmarks. Throws InputError when `experiments` is no number of experiments.
+/// `study` must outlive the benchmarks. Throws InputError if the study does not have so many experiments.
 void register_study_benchmarks(const Study& study, std::int64_t experiments);
 
 /// Registers the loops of made-up plants (SparseLoop) of all sizes,
@@ -43,14 +43,14 @@ void register_study_benchmarks(const Study& study, std::int64_t experiments);
 /// |---------------------------|---------------------------------------------------------------|
 /// | median_us, p99_us, max_us | a step of the controller, over the samples of the last pass   |
 /// | targets_share             | share of the steps' time in the solver of the targets         |
-/// | moves_share               | in that of the moves                                          |
+/// | moves_share               | share of the steps' time in the solver of the moves           |
 /// | iterations                | of the moves, mean                                            |
 /// | kkt                       | largest KKT residual                                          |
 /// | not_solved, programs      | samples without a move; samples                               |
-/// | making_ms                 | to make the controller, before the first step                 |
+/// | making_ms                 | time to make the controller, before the first step            |
 void register_size_benchmarks();
 
-/// The samples that every back end solves: a few, for the slow ones, from the first disturbance step on.
+/// The samples that every back end solves, from the first disturbance step on: few, because some are slow.
 inline constexpr std::size_t kPairedFirst = 20, kPairedCount = 20;
 
 }  // namespace mpm

@@ -24,8 +24,8 @@ double limited(double limit) {
 
 }  // namespace
 
-/// DAQP's variables are (x, s) with the shared slacks s; first come their bounds, then the rows, two a soft
-/// row where slacks are shared: a x - s <= upper and a x + s >= lower.
+/// DAQP's variables are (x, s) with the shared slacks s. Its limits are first their bounds, then the rows; if
+/// slacks are shared, each soft row gives two: a x - s <= upper and a x + s >= lower.
 struct DaqpRival::Workspace {
   explicit Workspace(const QpStructure& structure);
 
@@ -99,7 +99,7 @@ void DaqpRival::Workspace::load(const QpData& data) {
   }
 }
 
-// Half the reciprocal of the weight of each row's slack, which DAQP scales in place.
+// Sets half the reciprocal of the weight of each row's slack, which DAQP scales in place.
 void DaqpRival::Workspace::set_softness() {
   for (Eigen::Index i = 0; i < (shared ? 0 : structure.row_count()); ++i) {
     const double softness = 0.5 / structure.slack_quadratic(structure.slack_of_row(i));

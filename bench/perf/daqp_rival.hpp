@@ -8,15 +8,15 @@
 
 namespace mpm {
 
-/// DAQP (github.com/darnstrom/daqp, a dual active-set method in C) on the programs of one sequence, warm:
-/// one workspace, of which only gradient and limits change.
+/// DAQP (github.com/darnstrom/daqp, a dual active-set method in C) on the programs of one sequence, warm: it
+/// has one workspace, in which only gradient and limits change.
 ///
 /// A slack that belongs to one row is DAQP's own soft constraint with the row's weight; shared slacks are
 /// variables, and each soft limit is a row of its own. The hard limits of the rows are left out, to its
 /// advantage.
 class DaqpRival {
  public:
-  /// `structure` must outlive this. Throws InputError when DAQP does not take it.
+  /// `structure` must outlive this. Throws InputError if DAQP does not accept it.
   explicit DaqpRival(const QpStructure& structure);
   ~DaqpRival();
   DaqpRival(const DaqpRival&) = delete;
@@ -24,10 +24,10 @@ class DaqpRival {
 
   /// Forgets the active set.
   void reset();
-  /// Seconds that DAQP took; its copies of the limits are made before.
+  /// Solves a program. Returns the seconds that DAQP took, without the time to copy the limits.
   double solve(const QpData& data);
 
-  /// Of the last program: true when there is an answer, and x (n).
+  /// For the last program: whether there is an answer, and x (n).
   bool solved() const;
   Eigen::Map<const Eigen::VectorXd> x() const;
 

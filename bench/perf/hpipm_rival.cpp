@@ -63,7 +63,7 @@ void HpipmRival::Workspace::set_structure(const QpStructure& structure) {
   Eigen::MatrixXd rows = structure.rows;
   const Eigen::Index n = rows.cols();
   const Eigen::Index m = rows.rows();
-  std::vector<int> bounded, softened;  // the limits are counted through: bounds, then rows
+  std::vector<int> bounded, softened;  // HPIPM numbers the limits through: bounds, then rows
   for (int j = 0; j < static_cast<int>(n); ++j)
     bounded.push_back(j);
   for (int i = 0; i < static_cast<int>(m); ++i)

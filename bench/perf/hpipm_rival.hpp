@@ -9,8 +9,8 @@
 namespace mpm {
 
 /// HPIPM (github.com/giaf/hpipm, an interior-point method in C on BLASFEO) on the programs of one sequence
-/// with a slack a row: its solver for dense programs in the mode SPEED, to 1e-8. It starts each program from
-/// nothing, and the hard limits of the rows are left out, as of DaqpRival.
+/// with one slack a row: its solver for dense programs in the mode SPEED, to 1e-8. It starts each program
+/// from nothing. The hard limits of the rows are left out, as for DaqpRival.
 class HpipmRival {
  public:
   explicit HpipmRival(const QpStructure& structure);
@@ -18,10 +18,10 @@ class HpipmRival {
   HpipmRival(const HpipmRival&) = delete;
   HpipmRival& operator=(const HpipmRival&) = delete;
 
-  /// Seconds that HPIPM took; its copies of the limits are made before.
+  /// Solves a program. Returns the seconds that HPIPM took, without the time to copy the limits.
   double solve(const QpData& data);
 
-  /// Of the last program: true when there is an answer, and x (n).
+  /// For the last program: whether there is an answer, and x (n).
   bool solved() const;
   const Eigen::VectorXd& x() const;
 

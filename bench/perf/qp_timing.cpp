@@ -36,7 +36,7 @@ double QpTiming::pass() {
   for (std::size_t k = 0; k < sequence_.data.size(); ++k) {
     if (start_ == StartOfSolve::cold)
       solver_->reset();
-    data_ = sequence_.data[k];  // in the cache, as a controller has it that has just written it
+    data_ = sequence_.data[k];  // in the cache, as after a controller has written it
     const double begin = short_seconds();
     const QpResult& result = solver_->solve(data_);
     const double elapsed = short_seconds() - begin;

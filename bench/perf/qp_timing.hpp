@@ -14,8 +14,8 @@ enum class StartOfSolve {
 
 /// The times of the solves of one sequence, and the accuracy of their answers.
 ///
-/// The time of a program is the median over the passes, so that what else the machine does counts as little
-/// as it can; the quantiles are those over the programs of the sequence.
+/// The time of a program is the median over the passes, so that other load of the machine counts as little as
+/// possible. The quantiles are over the programs of the sequence.
 struct QpTimes {
   double median = 0.0;          ///< microseconds
   double p99 = 0.0;             ///< microseconds, quantile 0.99
@@ -26,20 +26,19 @@ struct QpTimes {
   std::int64_t infeasible = 0;  ///< programs of one pass
 };
 
-/// Of the microseconds of each program (one line a program, one number a pass): median, p99 and max.
+/// Median, p99 and max from the microseconds of each program (one line a program, one number a pass).
 QpTimes program_times(const std::vector<std::vector<double>>& microseconds);
 
 /// Solves a sequence again and again and times every program by itself.
 class QpTiming {
  public:
-  /// `sequence` has a program at least and must outlive this.
+  /// `sequence` has at least one program and must outlive this object.
   QpTiming(const QpSequence& sequence, const QpSolverFactory& factory, StartOfSolve start);
 
-  /// All programs once; returns the seconds in `QpSolver::solve`, checks and certificate
-  /// included.
+  /// Solves all programs once. Returns the seconds in `QpSolver::solve`, checks and certificate included.
   double pass();
 
-  /// Of the passes so far; at least one.
+  /// The times of the passes so far; there must be at least one.
   QpTimes times() const;
 
  private:

@@ -25,13 +25,13 @@ struct RaceOptions {
   std::string filter;
 };
 
-/// DAQP's passes over a sequence, as QpTiming's.
+/// Times DAQP's passes over a sequence, as QpTiming does.
 class DaqpTiming {
  public:
   explicit DaqpTiming(const QpSequence& sequence)
       : sequence_(sequence), rival_(*sequence.structure), microseconds_(sequence.data.size()) {}
 
-  /// All programs once.
+  /// Solves all programs once.
   void pass() {
     rival_.reset();
     for (std::size_t k = 0; k < sequence_.data.size(); ++k)
@@ -66,7 +66,7 @@ Agreement compare_answers(const QpSequence& sequence) {
   return result;
 }
 
-/// Median (least to largest) of what the rounds gave.
+/// The text "median (least to largest)" of the values of the rounds.
 std::string spread(std::vector<double> values, const char* format) {
   std::sort(values.begin(), values.end());
   const auto text = [&](double value) { return fmt::format(fmt::runtime(format), value); };

@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kFirst = 20;  // the second step of a disturbance
 
-/// The active-set method as the rivals are, but that its checks and its certificate count.
+/// The active-set method in the form of the rivals. Its time includes its checks and its certificate.
 class Ours {
  public:
   explicit Ours(const QpStructure& structure)
@@ -43,7 +43,7 @@ class Ours {
   std::unique_ptr<QpSolver> solver_;
 };
 
-/// All programs in their order, each solver from its last answer; one line of the table.
+/// Has a solver solve all programs in their order, from its last answer. Prints one line of the table.
 template <class Solver>
 void race(const std::string& name, const PlantSize& size, const SparseLoop::Programs& programs) {
   Solver solver(programs.structure);

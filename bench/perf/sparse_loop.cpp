@@ -40,7 +40,7 @@ TransferFunction random_channel(RandomStream& random) {
   return TransferFunction::first_order(gain, time_constant, static_cast<double>(random.below(9)));
 }
 
-/// `count` of the numbers below `all`.
+/// Draws `count` different numbers below `all`.
 std::vector<int> some_of(RandomStream& random, int all, int count) {
   std::vector<int> numbers(static_cast<std::size_t>(all));
   std::iota(numbers.begin(), numbers.end(), 0);
@@ -81,7 +81,7 @@ MpcOptions range_controller(const PlantSize& size, SlackForm slack) {
   return options;
 }
 
-/// What acts on a loop from outside: steps of MDs, and of what is added to the CVs behind a lag, and noise.
+/// What acts on a loop from outside: steps of MDs, steps that are added to the CVs behind a lag, and noise.
 class Surroundings {
  public:
   explicit Surroundings(const PlantSize& size)
@@ -124,7 +124,7 @@ class TimedSolver final : public QpSolver {
     result = solver_->solve(data);
     seconds_ += thread_seconds() - begin;
   }
-  void certify(const QpData& /*data*/, QpResult& /*result*/) override {}  // the other one has
+  void certify(const QpData& /*data*/, QpResult& /*result*/) override {}  // the other solver has done so
   void do_reset() override { solver_->reset(); }
 
   std::unique_ptr<QpSolver> solver_;

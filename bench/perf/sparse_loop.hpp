@@ -23,7 +23,7 @@ struct PlantSize {
 /// The sizes of the curve in docs/performance.md.
 inline constexpr PlantSize kPlantSizes[] = {{7, 3}, {20, 8}, {40, 15}, {80, 30}};
 
-/// A made-up plant with a range controller as that of chapter6 (6.19), (6.20), and a loop of the two:
+/// A made-up plant with a range controller like that of chapter6 (6.19), (6.20), and a loop of the two:
 ///
 /// | what          | value                                                                              |
 /// |---------------|------------------------------------------------------------------------------------|
@@ -35,8 +35,8 @@ inline constexpr PlantSize kPlantSizes[] = {{7, 3}, {20, 8}, {40, 15}, {80, 30}}
 /// | limits        | MVs hard +-1; CVs soft +-0.5, hard +-4                                             |
 /// | weights       | move suppression 25, target 1, slack 100; costs of the MVs +-(1 to 8)              |
 /// | noise         | of the CVs, standard deviation 0.01                                                |
-/// | disturbances  | every 10 samples a step to +-0.4 at most: in turn of an MD, and of what is added   |
-/// |               | to a CV behind a lag of 15 samples, which the controller cannot see                |
+/// | disturbances  | every 10 samples a step to +-0.4 at most: in turn an MD, and a signal that is      |
+/// |               | added to a CV behind a lag of 15 samples, which the controller cannot see          |
 ///
 /// All of it follows from the size and a seed.
 class SparseLoop {
@@ -48,7 +48,7 @@ class SparseLoop {
     std::vector<double> step;  ///< microseconds of processor time, the whole step of the controller
     double making = 0.0;       ///< seconds to make the controller
     double targets = 0.0;      ///< seconds of the loop in the solver of (6.19)
-    double moves = 0.0;        ///< in that of (6.20)
+    double moves = 0.0;        ///< seconds of the loop in the solver of (6.20)
     double iterations = 0.0;   ///< of the moves, mean
     double kkt_residual = 0.0;
     int not_solved = 0;  ///< samples without a move
@@ -56,8 +56,8 @@ class SparseLoop {
 
   Times run(const QpSolverFactory& factory, int samples) const;
 
-  /// The programs of the moves of `count` samples from sample `first` on, with the active-set method's
-  /// answers.
+  /// The programs of the moves of `count` samples from sample `first` on, with the answers of the active-set
+  /// method.
   struct Programs {
     QpStructure structure;
     std::vector<QpData> data;

@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-// Of this process and of those it has waited for: the experiments run in a worker process.
+// The time of this process and of those that it has waited for: the experiments run in a worker process.
 double processor_seconds() {
   double seconds = 0.0;
   for (const int whose : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
