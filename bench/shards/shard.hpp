@@ -14,22 +14,22 @@
 
 namespace mpm {
 
-/// Version of the format of a shard; a reader knows its own only.
+/// Version of the format of a shard; a reader reads only its own version.
 inline constexpr std::int32_t kShardVersion = 3;
 
-/// Collects the bytes of a shard: finished work of a run that is not finished, each under its key
+/// Collects the bytes of a shard: pieces of finished work of an unfinished run, each under its key
 /// (docs/running.md). The format: "mpmbench shard" and a line end, version, identity, seconds, key and bytes
 /// of each entry to the end, all as results/files/byte_stream writes them, and the seal of
 /// results/files/file_seal.
 class ShardBytes {
  public:
-  /// One more entry.
+  /// Adds an entry.
   void add(std::int64_t key, const std::string& bytes);
   bool empty() const { return entries_.empty(); }
   std::size_t size() const { return entries_.size(); }
 
-  /// Writes what was added as a shard, all or nothing, and is empty then. Throws ArchiveError when the file
-  /// cannot be written; nothing is lost from the object then.
+  /// Writes what was added as a shard, all or nothing, and is empty afterwards. Throws ArchiveError if the
+  /// file cannot be written; the object then keeps its entries.
   void write(const std::filesystem::path& path, const ShardIdentity& identity, double seconds);
 
  private:
@@ -58,7 +58,7 @@ struct ShardPlace {
 
 /// What is in a shard.
 struct ShardContent {
-  double seconds = 0.0;  ///< wall-clock time that it took
+  double seconds = 0.0;  ///< wall-clock time of its work
   std::vector<ShardPlace> places;
   std::string file;  ///< all bytes of the shard
 

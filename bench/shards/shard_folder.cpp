@@ -27,7 +27,7 @@ std::vector<fs::path> files_in(const fs::path& folder, const char* extension) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     if (entry.path().extension() == extension && entry.is_regular_file(error))  // a pipe might never answer
       files.push_back(entry.path());
-  std::sort(files.begin(), files.end());  // numbers of fixed width
+  std::sort(files.begin(), files.end());  // names are numbers of fixed width
   return files;
 }
 

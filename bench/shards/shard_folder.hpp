@@ -41,14 +41,14 @@ std::vector<std::filesystem::path> shards_in(const std::filesystem::path& folder
 /// The file in a folder of shards that says to which campaign they belong (bench/parts/part_folder).
 inline constexpr const char* kCampaignDescription = "campaign.json";
 
-/// Where the shards of an output lie: beside it.
+/// The folder of the shards of an output: beside it.
 std::filesystem::path shard_folder_of(const std::filesystem::path& output);
 
 /// Removes the shards in a folder, their description, and the folder. Throws
 /// InputError when a run is at work in it.
 void remove_shard_folder(const std::filesystem::path& folder);
 
-/// The same of an output, whose archive is written.
+/// The same for the shards of an output, once its archive is written.
 void remove_shards(const std::filesystem::path& output);
 
 /// Whether an interrupted run of this output has left shards.

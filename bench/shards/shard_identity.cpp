@@ -17,7 +17,7 @@
 namespace mpm {
 namespace {
 
-/// The methods, each with what else decides on its answers.
+/// The methods, each with everything else that decides its answers.
 std::string methods_text(const Study& study) {
   std::vector<std::string> methods;
   for (const std::string& name : study.methods) {

@@ -20,9 +20,9 @@ struct IdentityEntry {
 };
 
 /// What two runs must have in common for the experiments of one to be experiments of the other: program (the
-/// bits of a result belong to one build), study, seed, methods, solver, audit share, which loops are
-/// stored, and where loops of an archive are assessed, which archive. Not the number of experiments, so that
-/// a longer run takes up a shorter one, nor jobs, threads and processes.
+/// bits of a result belong to one build), study, seed, methods, solver, audit share, which loops are stored
+/// and, if loops of an archive are assessed, which archive. The number of experiments is no part of it, so
+/// that a longer run can resume a shorter one; nor are jobs, threads and processes.
 using ShardIdentity = std::vector<IdentityEntry>;
 
 ShardIdentity shard_identity(const Study& study, const RunOptions& options);
@@ -35,7 +35,7 @@ class OtherRun : public InputError {
  public:
   using InputError::InputError;
 
-  /// The same, where the option `--discard` deletes them.
+  /// The same error, with the advice that the option `--discard` deletes the shards.
   OtherRun with_advice() const { return OtherRun(fmt::format("{}; or --discard, which deletes it", what())); }
 };
 

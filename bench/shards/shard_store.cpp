@@ -50,8 +50,8 @@ bool KeySet::insert(std::int64_t key) {
   return is_new;
 }
 
-/// Goes through the entries of shards in the order of their keys. A shard is looked at when its first key is
-/// reached, and kept open while others are read: neighbours lie in the same few shards.
+/// Goes through the entries of shards in the order of their keys. A shard is opened when its first key is
+/// reached, and stays open while others are read: neighbouring keys lie in the same few shards.
 class ShardStore::Sweep {
  public:
   Sweep(const ShardStore& store, std::int64_t first, std::int64_t end)
@@ -225,7 +225,7 @@ void ShardStore::remove(const std::vector<std::int64_t>& keys) {
 void ShardStore::pack(const KeySet& removed) {
   const std::vector<std::filesystem::path> before = folder_->shards();
   std::vector<Shard> after;
-  double seconds = seconds_;  // all of it in the first one
+  double seconds = seconds_;  // the first new shard gets all of it
   std::int64_t last = -1;
   const Next next = in_order(0, kNoKey);
   while (const Entry* const entry = next()) {

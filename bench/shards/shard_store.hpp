@@ -18,24 +18,24 @@
 
 namespace mpm {
 
-/// Whole numbers from 0 on, many of them neighbours, in little memory.
+/// A set of whole numbers from 0 on, many of them neighbours, in little memory.
 class KeySet {
  public:
   bool has(std::int64_t key) const;
-  /// Whether it was not there.
+  /// Returns whether the key is new.
   bool insert(std::int64_t key);
 
  private:
   std::map<std::int64_t, std::vector<bool>> blocks_;
 };
 
-/// The one place where finished work waits until all of it is there: bytes, each under a key from 0 on, in
-/// shards on the disk, or without a folder in memory.
+/// The one place where finished work waits until all of it is there: bytes under keys from 0 on, in shards on
+/// the disk, or in memory if there is no folder.
 class ShardStore {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// What opens a folder.
+  /// How to open a folder.
   struct Options {
     Leftovers leftovers = Leftovers::resume;
     double interval = RunOptions().shard_interval;  ///< s from one shard to the next
@@ -45,7 +45,7 @@ class ShardStore {
   struct Entry {
     std::int64_t key = 0;
     std::string bytes;
-    const std::filesystem::path* shard = nullptr;  ///< that it is in; null: in memory
+    const std::filesystem::path* shard = nullptr;  ///< the shard that it is in; null: in memory
   };
   /// The next entry at each call, valid until the next call; null after the last one.
   using Next = std::function<const Entry*()>;
@@ -55,11 +55,11 @@ class ShardStore {
 
   /// Opens the folder, which is locked as long as the store lives, and looks at the shards in it. A shard is
   /// written when the last one is `interval` old, and when 64 MiB are waiting, so that they do not fill the
-  /// memory. Throws InputError when shards lie there and are to be refused, and as take_stock(); ArchiveError
-  /// when the folder cannot be made. No shard is changed then.
+  /// memory. Throws InputError if shards are there and leftovers are to be refused, and as take_stock();
+  /// ArchiveError if the folder cannot be made. An error changes no shard.
   ShardStore(const std::filesystem::path& folder, ShardIdentity identity, Options options);
 
-  /// What is in these shards, which stay where they are, is done too. A damaged one is passed over with a
+  /// Counts what is in these shards as done, too; they stay where they are. Skips a damaged shard with a
   /// warning. Errors: as read_shard().
   void take_stock(const std::vector<std::filesystem::path>& shards, const Warn& warn);
 
@@ -67,7 +67,7 @@ class ShardStore {
   void clear();
 
   bool has(std::int64_t key) const { return done_.has(key); }
-  /// Those of the keys that it does not have, in their order.
+  /// The keys that the store does not have, in their order.
   std::vector<std::int64_t> missing(const std::vector<std::int64_t>& keys) const;
   /// Wall-clock time that the work in the shards took, in s.
   double seconds() const { return seconds_; }
@@ -77,32 +77,32 @@ class ShardStore {
   /// Writes all waiting results.
   void flush();
 
-  /// Puts what is in the shards of the folder, which were all flushed, into as few of them as there can be:
-  /// many small files are a burden where they are kept. Damaged ones are removed. Killed in the middle it
-  /// leaves entries in two shards. Throws ArchiveError.
+  /// Packs the shards of the folder into as few as possible, since many small files are a burden where they
+  /// are kept. All entries must have been flushed. Removes damaged shards. If it is killed midway, it leaves
+  /// entries in two shards. Throws ArchiveError.
   void compact();
-  /// The same without these keys, from which on the store is not used.
+  /// The same, but leaves out these keys. The store must not be used afterwards.
   void remove(const std::vector<std::int64_t>& keys);
 
-  /// The entries, all flushed, with keys from `first` to `end` - 1 in the order of their keys, and where
-  /// several shards have a key in the order of these. They are read when they are asked for, and in memory
-  /// are their places in those shards that hold neighbours of the one at hand. The store must outlive it.
-  /// Throws ArchiveError when a shard can no longer be read.
+  /// The entries with keys from `first` to `end` - 1 in the order of their keys; if several shards have a
+  /// key, in the order of the shards. All entries must have been flushed. An entry is read when it is asked
+  /// for; memory holds the places of the entries in those shards that have neighbours of this one. The store
+  /// must outlive the result, which throws ArchiveError if a shard can no longer be read.
   Next in_order(std::int64_t first, std::int64_t end) const;
-  /// Whether several shards have one key.
+  /// Whether several shards have the same key.
   bool has_repeated() const { return repeated_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   class Sweep;
 
-  /// A shard that is whole.
+  /// An intact shard.
   struct Shard {
     std::filesystem::path path;
-    std::int64_t least, most;  ///< its keys
+    std::int64_t least, most;  ///< its lowest and its highest key
   };
 
-  /// One more entry for the next shard.
+  /// Adds an entry to the next shard.
   void hold(std::int64_t key, const std::string& bytes);
   /// Puts all but the removed entries into new shards.
   void pack(const KeySet& removed);
@@ -117,7 +117,7 @@ class ShardStore {
   bool repeated_ = false;
   double seconds_ = 0.0;
   ShardBytes waiting_;
-  Shard next_;  ///< that the waiting entries will be
+  Shard next_;  ///< the shard that the waiting entries will make
   std::map<std::int64_t, std::string> memory_;
   Clock::time_point written_ = Clock::now();
 };
