@@ -125,7 +125,7 @@ std::vector<std::string> take_from_data(const DataSketch& data, StudySketch& ske
       moves = moves || !sketch.ranges[i];
     }
   }
-  constexpr double kOftener = 0.2;  // of the guessed sample time; if rows come faster, the MPC is slower
+  constexpr double kOftener = 0.2;  // of the guessed time; faster rows are the historian's, not the MPC's
   const double guessed = parse_study(study_template(sketch), "study").controller.sample_time;
   const bool slow = steps ? data.step > guessed : data.step >= kOftener * guessed;
   const bool sampled = !words.sample_time && slow;

@@ -25,7 +25,7 @@ std::string without_discard(std::string command_line);
 /// "3.2 s", "12 min", "3.1 h"
 std::string duration_text(double seconds);
 
-/// Whether all output of print_result() has been written. If not, prints a note that says so.
+/// Whether all output of print_result() has been written. If not, prints a note with the possible reasons.
 bool results_arrived();
 
 /// Occupies the numbers of stdin, stdout and stderr that the caller has closed. Otherwise a file that is

@@ -48,7 +48,7 @@ class WatchedFile {
   }
 
   std::string path_;
-  int descriptor_;  // -1 if there is no file: its reader will say so
+  int descriptor_;  // -1 if the file cannot be opened: its reader will say so
   struct ::stat then_;
 };
 
