@@ -19,8 +19,8 @@
 namespace mpm {
 namespace {
 
-/// The samples that are there, and half of the mean squared difference of those that follow each other as
-/// closely as any two do: one sample apart, or a period of an analyser.
+/// Returns the samples that are there. Sets `noise` to half of the mean squared difference of those that
+/// follow each other at the smallest distance: one sample, or one period of an analyser.
 std::vector<Eigen::Index> samples_of(const Eigen::RowVectorXd& e, double& noise) {
   std::vector<Eigen::Index> samples;
   for (Eigen::Index k = 0; k < e.size(); ++k)
@@ -39,12 +39,12 @@ std::vector<Eigen::Index> samples_of(const Eigen::RowVectorXd& e, double& noise)
   return samples;
 }
 
-/// e and X less what the habit predicts of them, over the samples whose past is known: those before them
-/// follow each other as closely as any do, `closest` samples apart.
+/// Subtracts from e and X what the habit predicts of them, and keeps the samples whose past is known: the
+/// samples before them follow each other at the smallest distance, `closest` samples.
 void whiten(const NoiseHabit& habit, Eigen::Index closest, double least, ChannelErrorFit& fit) {
   fit.e -= fit.X * habit.errors;
   const Eigen::Index p = habit.autoregression.size();
-  std::vector<Eigen::Index> kept, samples;  // places in what is whitened, and in the loop
+  std::vector<Eigen::Index> kept, samples;  // places in the whitened signals, and in the loop
   for (std::size_t i = static_cast<std::size_t>(p); i < fit.samples.size(); ++i)
     if (fit.samples[i] - fit.samples[i - static_cast<std::size_t>(p)] == p * closest) {
       kept.push_back(static_cast<Eigen::Index>(i) - p);
@@ -129,7 +129,7 @@ ChannelErrorFit ChannelErrorFits::of(const AssessedLoop& loop, Eigen::Index cv) 
   fit.errors = priors_[static_cast<std::size_t>(cv)].channels;
   const Eigen::MatrixXd inputs = model_inputs(loop.from_start());
   fit.X = errors_[static_cast<std::size_t>(cv)]
-              .slopes(inputs, inputs.col(0))  // what moved the model before the record is not known
+              .slopes(inputs, inputs.col(0))  // the inputs before the record are not known
               .middleCols(loop.first, loop.samples())(Eigen::all, samples)
               .transpose();
   const Eigen::MatrixXd U = untold_columns(study_, cv, starts_after_unknown(loop.y, settling_),

@@ -12,26 +12,27 @@
 
 namespace mpm {
 
-/// The simulation errors of a CV as errors of its channels explain them, over the n samples that are there:
+/// The simulation errors of a CV, explained by errors of its channels, over the n samples that are there:
 ///
 ///   e = X a + n,    a ~ N(0, I)
 ///
 /// with X (n x p) the responses to an error of gain, time constants and dead time of every channel by one
-/// standard deviation each (relative_errors()) under the recorded inputs, less what no record can tell
-/// (untold_columns()), which y_sim has.
+/// standard deviation each (relative_errors()) under the recorded inputs, without the part that no record can
+/// tell (untold_columns()), which y_sim already contains.
 struct ChannelErrorFit {
-  std::vector<ChannelError> errors;   ///< p, of each column
-  std::vector<Eigen::Index> samples;  ///< n, of the loop
+  std::vector<ChannelError> errors;   ///< p, the error of each column of X
+  std::vector<Eigen::Index> samples;  ///< n, samples of the loop
   Eigen::VectorXd e;                  ///< n
   Eigen::MatrixXd X;
-  double noise =
-      0.0;  ///< half of the mean squared difference of successive errors, those of a CV of an analyser too
+  /// Half of the mean squared difference of successive errors, also for a CV of an analyser.
+  double noise = 0.0;
   Eigen::VectorXd a;  ///< the most likely errors, p
   double left = 0.0;  ///< mean (e - X a)^2
 };
 
-/// Sums over a part of the record, from which its own errors follow: X' X, X' e, e' e, n. X has a further
-/// column, a constant of the part: that of the whole record has a share of what is wrong in the rest of it.
+/// Sums over a part of the record, from which the errors of this part alone follow: X' X, X' e, e' e, n. X
+/// has one more column, a constant for the part, because the constant of the whole record also contains a
+/// share of what is wrong in the other parts.
 struct ChannelErrorSums {
   Eigen::MatrixXd XX;
   Eigen::VectorXd Xe;
@@ -41,13 +42,13 @@ struct ChannelErrorSums {
   ChannelErrorSums& operator-=(const ChannelErrorSums& less);
 };
 
-/// Of the samples of the loop from `first` to before `end`.
+/// The sums over the samples of the loop from `first` to before `end`.
 ChannelErrorSums sums_between(const ChannelErrorFit& fit, Eigen::Index first, Eigen::Index end);
 
-/// What the errors are and leave in such a part, as ChannelErrorFit has it for all of it.
+/// The errors in such a part and what they leave, as ChannelErrorFit has them for the whole record.
 struct PartialErrorFit {
   Eigen::VectorXd a;           ///< p
-  Eigen::MatrixXd covariance;  ///< of a and the constant, p + 1 x p + 1, and I where nothing is told
+  Eigen::MatrixXd covariance;  ///< of a and the constant, p + 1 x p + 1; I if the part tells nothing
   double left = 0.0;
 };
 
@@ -64,10 +65,10 @@ struct NoiseHabit {
   Eigen::VectorXd autoregression;
   double variance = 0.0;       ///< of w
   double differences = 0.0;    ///< ChannelErrorFit::noise of the period
-  double channel_score = 0.0;  ///< max |a| / 2: above a threshold of scores a channel is wrong there
+  double channel_score = 0.0;  ///< max |a| / 2; above a threshold of scores, a channel is wrong in the period
 };
 
-/// The same of all CVs.
+/// The habits of all CVs in a period.
 struct ModelHabit {
   Eigen::Index first = 0, end = 0;               ///< samples of the period in its record
   std::vector<std::optional<NoiseHabit>> noise;  ///< of each CV; none where the period has too few samples
@@ -76,18 +77,18 @@ struct ModelHabit {
 /// Fits of the CVs of a study whose channels may be off by the relative size `delta`; 0: p = 0.
 class ChannelErrorFits {
  public:
-  /// With a habit the errors are those beside it: e is without its X a, e and X are whitened by its
-  /// autoregression, and `noise` is its variance; null: the record itself says what is noise.
+  /// With a habit the fits find the errors beyond it: its X a is subtracted from e, its autoregression
+  /// whitens e and X, and its variance becomes `noise`. Null: `noise` is estimated from the record itself.
   ChannelErrorFits(const Study& study, double delta, std::shared_ptr<const ModelHabit> habit = nullptr);
 
-  /// Of a CV of a loop or a window. Throws InputError for fewer than two samples.
+  /// Fits a CV of a loop or a window. Throws InputError for fewer than two samples.
   ChannelErrorFit of(const AssessedLoop& loop, Eigen::Index cv) const;
 
  private:
   const Study& study_;
   Eigen::Index settling_;
   std::vector<ModelErrorPrior> priors_;
-  std::vector<ModelErrors> errors_;  ///< of each CV, before anything is seen; none: the model is exact
+  std::vector<ModelErrors> errors_;  ///< of each CV, before any record is seen; empty: the model is exact
   std::shared_ptr<const ModelHabit> habit_;
 };
 

@@ -12,10 +12,12 @@
 namespace mpm {
 namespace {
 
-constexpr double kUsual = 2.0;  ///< the largest of some errors of the model, standard deviations
+/// Usual size of the largest of several errors of the model, in standard deviations.
+constexpr double kUsual = 2.0;
 
-/// log of the evidence of a part of the errors with e = X a + n, a ~ N(0, spread^2 I), n of a variance of its
-/// own. `weight`: independent samples in a sample.
+/// Returns the logarithm of the evidence of a part of the errors with e = X a + n, a ~ N(0, spread^2 I), and
+/// n with a variance of its own, at least `least`. `weight` is how many independent samples one sample is
+/// worth.
 double part_evidence(ChannelErrorSums sums, double spread, double least, double weight) {
   const Eigen::Index p = sums.Xe.size();
   if (sums.n < 1.0)
@@ -35,8 +37,8 @@ double part_evidence(ChannelErrorSums sums, double spread, double least, double 
   return evidence;
 }
 
-/// Independent samples in a sample of what the errors of both parts of a record leave, (1 - rho) / (1 + rho);
-/// the later one begins at `place`.
+/// Returns how many independent samples one sample is worth, (1 - rho) / (1 + rho). rho is the correlation of
+/// successive samples of what the errors of both parts of a record leave; the later part begins at `place`.
 double independent_share(const ChannelErrorFit& fit, const Eigen::VectorXd& before,
                          const Eigen::VectorXd& after, Eigen::Index place) {
   const Eigen::Index n = fit.e.size();
@@ -129,7 +131,7 @@ std::optional<FaultOnset> fault_onset(const ChannelErrorFit& fit, double thresho
   Eigen::Index best = 0;
   double top = 0.0;
   for (int pass = 0; pass < 2; ++pass) {
-    // The best cut says what is noise, and this how much the cut is worth.
+    // The best cut of the first pass tells the noise, and the noise tells how much a sample is worth.
     const double weight = pass == 0 ? 1.0
                                     : independent_share(fit, errors_of(sample(0), sample(best)).a,
                                                         errors_of(sample(best), sample(kTriedOnsets)).a,

@@ -11,7 +11,8 @@
 #include "base/enum_words.hpp"
 #include "scenarios/faults/fault.hpp"
 
-// The errors of the channels over time: which of them is wrong in which period, and since when something is.
+// The errors of the channels over time: which channel is wrong in which period, and since when something is
+// wrong.
 
 namespace mpm {
 
@@ -19,15 +20,15 @@ enum class ChannelState : std::int8_t { good, in_doubt, wrong };
 template <>
 inline constexpr auto kWords<ChannelState> = word_list("good", "in doubt", "wrong");
 
-/// A channel in a period. With a the errors of a fit of this period alone (PartialErrorFit) in standard
-/// deviations delta of what a healthy model has, C their covariance and t a threshold of the score:
+/// A channel in a period. Let a be the errors of a fit of this period alone (PartialErrorFit), in standard
+/// deviations delta of the errors of a healthy model, C their covariance, and t a threshold of the score:
 ///
 ///   score = max |a| / 2 over the parameters of the channel,   wrong: score > t
 ///   visible = 2 t delta / (1 - C_gg), the error of the gain that reaches t; in doubt: above a half
 struct ChannelPeriod {
   ChannelState state = ChannelState::in_doubt;
   double score = 0.0;
-  MismatchParameter parameter = MismatchParameter::gain;  ///< the one furthest off
+  MismatchParameter parameter = MismatchParameter::gain;  ///< the parameter that is furthest off
   double size = 0.0;     ///< its factor, or the shift of a dead time in the time unit of the plant
   double visible = 0.0;  ///< relative
 };
@@ -38,20 +39,21 @@ struct ChannelHistory {
   std::vector<ChannelPeriod> periods;
 };
 
-/// First samples of periods of the same length, of three settling times or more, at most eight.
+/// Returns the first samples of periods of equal length: at most eight periods, each of three settling times
+/// or more, or one period if the record is shorter.
 std::vector<Eigen::Index> health_periods(Eigen::Index samples, Eigen::Index settling);
 
-/// Of the channels of the CV that is fitted; `begins` as health_periods() has them.
+/// The histories of the channels of the CV that is fitted; `begins` as returned by health_periods().
 std::vector<ChannelHistory> channel_histories(const ChannelErrorFit& fit, Eigen::Index cv,
                                               const std::vector<Eigen::Index>& begins, Eigen::Index samples,
                                               double threshold);
 
-/// Since when the errors of a CV are others than before; none: since its start, or nobody can tell. Each of
-/// 60 onsets cuts the record in two, an earlier part with the errors of a healthy model and a later one with
-/// errors ten times as large, each with noise of its own; the evidence of both against that of errors of
-/// either size throughout, where an onset is as probable as none before. There is an onset where it has 95 %
-/// of the posterior, and the score of the earlier part is not above `threshold` or half of that of the later
-/// one.
+/// Returns since when the errors of a CV differ from those before; none: they did so from the start, or
+/// nobody can tell. Each of 60 onsets cuts the record in two: an earlier part with the errors of a healthy
+/// model and a later one with errors ten times as large, each with noise of its own. The evidence of both
+/// parts is compared with that of errors of either size throughout; beforehand an onset is as probable as
+/// none. There is an onset if it has 95 % of the posterior, and if the score of the earlier part is not above
+/// the larger of `threshold` and half of the score of the later part.
 std::optional<FaultOnset> fault_onset(const ChannelErrorFit& fit, double threshold);
 
 /// The score of the errors of a CV or of a part of them (equation in model_check.hpp).

@@ -11,7 +11,8 @@
 namespace mpm {
 namespace {
 
-constexpr double kTakesPart = 0.3;  ///< of a unit vector of three
+/// Least component of a parameter that takes part, in a unit vector of three.
+constexpr double kTakesPart = 0.3;
 
 }  // namespace
 

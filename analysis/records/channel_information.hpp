@@ -10,16 +10,16 @@
 
 namespace mpm {
 
-/// What a record tells of gain, time constants and dead time of one channel. With X and the noise v of
-/// ChannelErrorFit, of the columns of this channel alone, the information is X' X / v. An eigenvalue above 1
-/// is a combination of them that the record tells better than it was known before.
+/// What a record tells about gain, time constants and dead time of one channel. With the columns X of this
+/// channel alone and the noise v of ChannelErrorFit, the information is X' X / v. An eigenvalue above 1
+/// belongs to a combination of the three that the record tells better than it was known before.
 struct ChannelInformation {
-  Eigen::Index parameters = 0;  ///< p: 3, or 2 of a channel without lag
+  Eigen::Index parameters = 0;  ///< p: 3, or 2 for a channel without lag
   Eigen::Index rank = 0;        ///< eigenvalues above 1
-  /// Of X' X with columns of length 1: 1 where each acts in its own way; infinite where a combination does
-  /// nothing.
+  /// Condition number of X' X with columns of length 1: 1 if each parameter acts in its own way, infinite if
+  /// a combination of them does nothing.
   double condition = 0.0;
-  /// What takes part in the combination that acts least.
+  /// The parameters that take part in the combination with the smallest effect.
   std::vector<MismatchParameter> alike = {};
 };
 

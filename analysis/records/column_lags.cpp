@@ -17,12 +17,12 @@ namespace mpm {
 namespace {
 
 constexpr Eigen::Index kMostShift = 3;
-/// Of the variance of what is left of the errors, in each CV. Of 26 healthy records
-/// (tests/reliability/records.py, seeds 2 and 3) one had such a shift.
+/// Least decrease of log_errors() by a shift, for each CV that the shift can change. One of 26 healthy
+/// records (tests/reliability/records.py, seeds 2 and 3) had such a shift.
 constexpr double kWorthNaming = 0.1;
 constexpr Eigen::Index kFewestErrors = 50;
 
-/// The row `shift` samples later; its ends keep the nearest value, or are missing.
+/// Moves the row `shift` samples later. Its ends keep the nearest value; those of a CV are missing.
 void shift_row(Eigen::MatrixXd& signals, Eigen::Index row, Eigen::Index shift, bool is_cv) {
   const Eigen::RowVectorXd before = signals.row(row);
   const Eigen::Index N = before.size();
@@ -33,8 +33,8 @@ void shift_row(Eigen::MatrixXd& signals, Eigen::Index row, Eigen::Index shift, b
   }
 }
 
-/// Logarithm of what errors of the model leave of the errors of each CV (ChannelErrorFit::left), ny; 0 of one
-/// with too few samples.
+/// Returns for each CV the logarithm of what errors of the model leave of the simulation errors
+/// (ChannelErrorFit::left), ny; 0 for a CV with too few samples.
 Eigen::VectorXd log_errors(const RecordFrame& frame, const PlantRecord& record) {
   const AssessedLoop loop = judged_loop(frame, record);
   const ChannelErrorFits fits(frame.as_kept, frame.model_error);
@@ -48,13 +48,13 @@ Eigen::VectorXd log_errors(const RecordFrame& frame, const PlantRecord& record) 
 struct Shifted {
   std::string name;
   bool is_cv = false;
-  Eigen::Index place = 0;  ///< row of G0, or column
+  Eigen::Index place = 0;  ///< row of G0 for a CV, otherwise its column
   Eigen::Index shift = 0;
-  double gain = 0.0;   ///< for each CV that it can change
-  double total = 0.0;  ///< over all CVs
+  double gain = 0.0;   ///< mean decrease of log_errors() of the CVs that it can change
+  double total = 0.0;  ///< the same, summed over all CVs
 };
 
-/// Does another dead time of one channel alone do as well?
+/// Returns whether a different dead time of one channel alone explains the record almost as well.
 bool is_one_channel(const RecordFrame& frame, const PlantRecord& record, const Eigen::VectorXd& as_recorded,
                     const Shifted& column) {
   constexpr double kAsWell = 0.8;
@@ -74,14 +74,14 @@ bool is_one_channel(const RecordFrame& frame, const PlantRecord& record, const E
   return false;
 }
 
-/// CVs that are better explained with the same shift, each by a tenth and more and by no other shift as well:
-/// one clock. Empty: fewer than two.
+/// CVs with one clock: the same shift explains each of them better by a tenth or more, and no other shift
+/// does so as well. Empty if there are fewer than two.
 struct SharedShift {
   std::vector<Eigen::Index> cvs;
   Eigen::Index shift = 0;
 };
 
-/// `gains`: of each CV (rows) from its own shift by -kMostShift to kMostShift (columns).
+/// `gains`: what each CV (rows) gains from a shift of its own column by -kMostShift to kMostShift (columns).
 SharedShift shared_shift(const Eigen::MatrixXd& gains) {
   SharedShift best;
   for (Eigen::Index column = 0; column < gains.cols(); ++column) {
@@ -119,7 +119,7 @@ std::vector<std::string> column_lags(const RecordFrame& frame, const PlantRecord
         shift_row(moved.*signals, static_cast<Eigen::Index>(i), shift, is_cv);
         const Eigen::VectorXd gains = as_recorded - log_errors(frame, moved);
         const double changed = (gains.array() != 0.0).cast<double>().sum();
-        // What is better for one CV and worse for another is one channel, or none.
+        // A shift that is better for one CV and worse for another points to one channel, or to none.
         const double gain = gains.minCoeff() < -kWorthNaming || changed == 0.0 ? 0.0 : gains.sum() / changed;
         if (is_cv)
           of_cvs(own.place, shift + kMostShift) = gain;

@@ -16,13 +16,14 @@ namespace mpm {
 namespace {
 
 constexpr Eigen::Index kAnswerLags = 3;  ///< samples within which a move answers an error
-/// Standard errors of a correlation. White moves exceed it in 1 of 2000 pairs; of 60 healthy closed loops
-/// (tests/reliability/records.py, seed 1) all did.
+/// Standard errors of a correlation. White moves exceed it in 1 of 2000 pairs; all of 60 healthy closed loops
+/// (tests/reliability/records.py, seed 1) exceeded it.
 constexpr double kAnswer = 3.5;
 constexpr Eigen::Index kFewestMoves = 50;
-constexpr double kMoveRounding = 1e-12;  ///< of what an MV may move
+constexpr double kMoveRounding = 1e-12;  ///< relative to the range or the mean of an MV
 
-/// The CVs as the controller gets them: a sample that is missing is the model with the last error.
+/// The CVs as the controller gets them: the output of the model plus the last error replaces a missing
+/// sample.
 Eigen::MatrixXd measured(const AssessedLoop& loop, const Eigen::MatrixXd& y) {
   Eigen::MatrixXd all = y;
   for (Eigen::Index cv = 0; cv < y.rows(); ++cv) {
@@ -69,15 +70,15 @@ Eigen::MatrixXd chosen(const RecordFrame& frame, const PlantRecord& record, cons
   return u;
 }
 
-/// The MVs where the controller has them, NaN elsewhere.
+/// The MVs at the samples at which the controller has them, NaN elsewhere.
 Eigen::MatrixXd moved_by_controller(const PlantRecord& record) {
   if (record.u_off.size() == 0)
     return record.u;
   return (record.u_off.array() == 1.0).select(kNaN, record.u.array());
 }
 
-/// 1 where moves are compared, 0 elsewhere: in what is not judged, and where the controller may have seen
-/// other CVs, or may have been off, at this sample or the one before.
+/// 1 at samples at which moves are compared, 0 elsewhere: at samples that are not judged, and where the
+/// controller may have seen other CVs or may have been off, at this sample or the one before.
 Eigen::ArrayXd compared_samples(const RecordFrame& frame, const PlantRecord& record) {
   Eigen::ArrayXd counts = Eigen::ArrayXd::Ones(record.samples());
   counts.head(std::min(record.samples(), std::max<Eigen::Index>({1, frame.unjudged, frame.settling})))
@@ -88,7 +89,7 @@ Eigen::ArrayXd compared_samples(const RecordFrame& frame, const PlantRecord& rec
   return counts;
 }
 
-/// Correlation of the pairs of which both are there; 0 of too few.
+/// Correlation over the `count` pairs of which both values are there; 0 if there are too few.
 double correlation(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b, double& count) {
   const auto there = !(a.isNaN() || b.isNaN());
   count = there.cast<double>().sum();
@@ -101,8 +102,8 @@ double correlation(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b, double& cou
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
-/// Do moves of some MV follow errors of some CV? Where nothing feeds the CVs back both are independent, and
-/// the moves are nearly white.
+/// Returns whether moves of some MV follow errors of some CV. Without feedback from the CVs both are
+/// independent, and the moves are nearly white.
 bool answers(const Eigen::MatrixXd& u, const Eigen::MatrixXd& e) {
   const Eigen::Index N = u.cols();
   if (N < kFewestMoves + kAnswerLags)
@@ -163,7 +164,7 @@ ControllerCheck check_controller(const RecordFrame& frame, const PlantRecord& re
     const double width =
         std::isfinite(hard.upper(mv) - hard.lower(mv)) ? hard.upper(mv) - hard.lower(mv) : 0.0;
     if (std::sqrt(variance) <= kMoveRounding * std::max(width, std::abs(mean)))
-      continue;  // it rests
+      continue;  // the MV rests
     check.agreement(mv) = 1.0 - (counts * off.square()).sum() / count / variance;
     check.pull(mv) = (counts * off).sum() / count / std::sqrt(variance);
   }

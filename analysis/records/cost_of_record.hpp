@@ -14,14 +14,14 @@ namespace mpm {
 ///
 ///   ratio = (now + f)/(designed + f),   now = cv_costs(y),
 ///
-/// with f = 0 for a CV with a setpoint and v for one in a range (cost_floor()), a level with both in its
-/// range (LevelCost::in_range), and
+/// with f = 0 for a CV with a setpoint and f = v for a CV in a range (cost_floor()). A level with both counts
+/// as in its range (LevelCost::in_range). The cost as designed is
 ///
 ///   designed = mean (y0 - y_set)^2 + v   of a CV with a setpoint,
 ///   designed = mean E dist(y0 + n)^2     of one in a range,
 ///
-/// y0 the nominal loop, n ~ N(0, v) the noise of the record, and dist the distance outside of the soft limits
-/// of the time. NaN of a CV with neither, and without samples.
+/// with y0 the nominal loop, n ~ N(0, v) the noise of the record, and dist the distance outside of the soft
+/// limits at that time. The ratio is NaN for a CV with neither, and for one without samples.
 ///
 /// | symbol | name  | shape  | unit                                       |
 /// |--------|-------|--------|--------------------------------------------|

@@ -12,7 +12,8 @@
 namespace mpm {
 namespace {
 
-/// An onset is looked for as far beside its interval as that is long, and a growth over a part of the record.
+/// An onset is searched for in its interval and as far to either side as the interval is long, at least
+/// kLeastRoom samples. A growth may take a kGrowingPart-th of the record.
 constexpr Eigen::Index kLeastRoom = 5;
 constexpr Eigen::Index kGrowingPart = 3;
 
@@ -22,8 +23,8 @@ FitSurroundings::Onset onset_range(const FaultOnset& since, Eigen::Index samples
           samples / kGrowingPart};
 }
 
-/// Nobody could tell since when: perhaps since the start. A fifth of the record is the least to see a channel
-/// in.
+/// The range of an onset that nobody could tell: perhaps the fault was there from the start. A channel needs
+/// at least a fifth of the record to show.
 FitSurroundings::Onset anywhere(Eigen::Index samples) {
   return {0, samples - samples / 5, samples / kGrowingPart};
 }
@@ -44,7 +45,7 @@ ChannelRepair fitted_repair(const Study& study, const OperatingPoint& point, con
     return error.input == channel.mv && (!only || error.parameter == *only);
   });
   const Eigen::MatrixXd inputs = model_inputs(loop.from_start());
-  const Eigen::VectorXd initial = inputs.col(0);  // what moved the model before the record is not known
+  const Eigen::VectorXd initial = inputs.col(0);  // the inputs before the record are not known
   const ModelErrors errors(study, channel.cv, prior, Eigen::RowVectorXd::Constant(1, kNaN),
                            Eigen::MatrixXd::Zero(inputs.rows(), 1), initial, 1.0, BaseNoise{1.0});
   const Eigen::RowVectorXd e = loop.y.row(channel.cv) - loop.y_sim.row(channel.cv);
@@ -62,7 +63,7 @@ ChannelRepair fitted_repair(const Study& study, const OperatingPoint& point, con
   ChannelRepair first = fitted_beside(nominal);
   if (!only)
     return first;
-  // The other parameters of the channel act as it is, and not as the model has it.
+  // The other parameters of the channel act on the channel as it is, not as the model has it.
   return fitted_beside(
       errors.slopes(nominal, {0, channel.mv, *only, size_of(first, *only)}, inputs, initial));
 }

@@ -51,8 +51,8 @@ class ModelCheck final : public AssessmentMethod {
   }
 
  private:
-  /// Of all samples, or with a habit of those outside of its period: it says nothing new of itself. `first`:
-  /// of the window in the record.
+  /// The score over all samples, or with a habit over those outside of its period, which says nothing new
+  /// about itself. `first`: first sample of the window in the record.
   double score_of(const ChannelErrorFit& fit, Eigen::Index first) const {
     if (habit_ == nullptr)
       return error_score(fit.a, fit.left, fit.noise);
@@ -61,8 +61,8 @@ class ModelCheck final : public AssessmentMethod {
     if (inside.n < outside.n)
       outside -= inside;
     const PartialErrorFit part = fit_of(outside, fit.noise);
-    // Beside a habit a record tells little of some errors. With a ~ N(0, I) before, and C after it, its means
-    // have the variances 1 - C where nothing is wrong.
+    // Beside a habit a record tells little about some errors. With a ~ N(0, I) before the record and
+    // covariance C after it, the means of a have the variances 1 - C_ii if nothing is wrong.
     const Eigen::Index p = part.a.size();
     const Eigen::ArrayXd told = (1.0 - part.covariance.diagonal().head(p).array()).max(1e-12);
     return error_score((part.a.array() / told.sqrt()).matrix(), part.left, fit.noise);
@@ -75,7 +75,7 @@ class ModelCheck final : public AssessmentMethod {
   Eigen::Index settling_;
 };
 
-/// Over the samples that are there, about their mean.
+/// The variance of the samples that are there, about their mean.
 double variance_of_known(const Eigen::RowVectorXd& y) {
   const auto is_there = !y.array().isNaN();
   const auto count = static_cast<double>(is_there.count());

@@ -13,8 +13,8 @@
 namespace mpm {
 namespace {
 
-/// By generalised least squares: noise that is not white, and moves of the controller that answer it, would
-/// otherwise look like errors of the channels.
+/// Fits by generalised least squares. Otherwise noise that is not white, and moves of the controller that
+/// answer it, would look like errors of the channels.
 NoiseHabit noise_habit(const ChannelErrorFit& fit) {
   constexpr int kPasses = 5;
   NoiseHabit habit{.autoregression = Eigen::VectorXd::Zero(kNoiseOrder), .differences = fit.noise};

@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// The habit that the period `benchmark` shows, a window of a record as judged_loop() has it, with errors of
-/// the channels of the relative size `delta` above 0.
+/// The habit that the period `benchmark` shows. The period is a window of a loop of judged_loop(); errors of
+/// the channels have the relative size `delta`, which is above 0.
 std::shared_ptr<const ModelHabit> habit_of(const Study& study, double delta, const AssessedLoop& benchmark);
 
 }  // namespace mpm

@@ -36,7 +36,7 @@
 namespace mpm {
 namespace {
 
-/// Whose answer the verdict is, and what it asks for the posterior.
+/// The method that the verdict follows, and the method that it asks for the posterior.
 constexpr const char *kVerdict = "mpmbench", *kOdds = "likelihood";
 
 /// The methods of a record: the verdict's first, and then the others that were asked for.
@@ -46,8 +46,8 @@ std::vector<std::string> with_verdict_first(std::vector<std::string> methods) {
   return methods;
 }
 
-/// y0: the controller on its own model under the recorded disturbances, without noise; what is not reached is
-/// zero.
+/// y0: the controller on its own model under the recorded disturbances, without noise. Samples that the loop
+/// does not reach are zero.
 Eigen::MatrixXd nominal_loop(const Study& study, const Eigen::MatrixXd& d, const QpSolverFactory& factory) {
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(study.cv_count(), d.cols());
   return run_closed_loop(study, study.plant.G,
@@ -84,7 +84,7 @@ void tell_benchmark(const RecordFrame& frame, RecordAssessment& assessment) {
       record.stamps[static_cast<std::size_t>(first)], record.stamps[static_cast<std::size_t>(end - 1)]));
 }
 
-/// Names the CVs whose noise is out of proportion: simulated records have that of the study.
+/// Names the CVs whose noise differs much from that of the study, which the simulated records have.
 void tell_noise(const RecordFrame& frame, RecordAssessment& assessment) {
   constexpr double kMuch = 3.0;
   if (!assessment.model.answered())
@@ -106,7 +106,7 @@ void tell_noise(const RecordFrame& frame, RecordAssessment& assessment) {
   }
 }
 
-/// The errors of the CVs beside those that the model may have.
+/// CvErrors of each CV, with X the responses to errors that the model may have.
 std::vector<CvErrors> cv_errors(const RecordFrame& frame, const AssessedLoop& loop) {
   const ChannelErrorFits fits(frame.as_kept, frame.model_error);
   std::vector<CvErrors> all;
@@ -132,7 +132,7 @@ void tell_unjudged(RecordAssessment& assessment) {
                     assessment.unjudged));
 }
 
-/// How the record is judged: its study, the nominal loop, and what of it nobody knows.
+/// How the record is judged: its study, the nominal loop, and the samples that are not judged.
 std::shared_ptr<RecordFrame> frame_of(const AssessOptions& options, const Study& study,
                                       const QpSolverFactory& factory, RecordAssessment& assessment) {
   auto frame = std::make_shared<RecordFrame>();
@@ -178,7 +178,7 @@ std::vector<CvCost> costs_since(const RecordFrame& frame, const RecordAssessment
                         std::max(from, frame.unjudged));
 }
 
-/// Since when the CV is wrong that the model explains least.
+/// The onset of the fault in the CV that the model explains least.
 std::optional<FaultOnset> onset_of(const RecordFrame& frame, const RecordAssessment& assessment,
                                    double threshold) {
   if (!assessment.model.answered() || !(assessment.model.score > threshold) ||
@@ -189,7 +189,8 @@ std::optional<FaultOnset> onset_of(const RecordFrame& frame, const RecordAssessm
                      threshold);
 }
 
-/// The channels in periods of the record, and the error of a gain that the record as a whole would show.
+/// Adds the health of the channels in periods of the record. Returns the smallest error of a gain that the
+/// record as a whole would show.
 double add_health(const RecordFrame& frame, RecordAssessment& assessment) {
   if (!assessment.model.answered() || frame.model_error == 0.0)
     return 0.0;
@@ -208,8 +209,8 @@ double add_health(const RecordFrame& frame, RecordAssessment& assessment) {
   return visible;
 }
 
-/// The benchmark in use, or else the period in which the model is best, with what its channels look like
-/// there.
+/// The benchmark in use, or else the period in which the model is best, with the largest score of a channel
+/// in it.
 RecordBenchmark best_benchmark(const RecordFrame& frame, const RecordAssessment& assessment) {
   const auto [first, end] = assessment.record.benchmark;
   RecordBenchmark benchmark{.use = first == end            ? BenchmarkUse::none
@@ -234,7 +235,7 @@ RecordBenchmark best_benchmark(const RecordFrame& frame, const RecordAssessment&
   return benchmark;
 }
 
-/// All that the verdict rests on but for source and repair.
+/// All evidence for the verdict except source and repair.
 VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessment) {
   VerdictEvidence evidence;
   if (assessment.model.answered())
@@ -261,19 +262,19 @@ VerdictEvidence evidence_of(const RecordFrame& frame, RecordAssessment& assessme
   return evidence;
 }
 
-/// What may be the matter with a record that the model does not explain.
+/// Adds the possible sources of a fault to the evidence on a record that the model does not explain.
 void add_sources(const RecordFrame& frame, RecordAssessment& assessment, VerdictEvidence& evidence) {
   const LateCvs corrected = frame.late;
   take_sources(assessment.loop, assessment.sources, assessment.trial ? assessment.trial->fit : kNaN,
                evidence);
-  if (corrected.any()) {  // nothing is left of it
+  if (corrected.any()) {  // the correction leaves nothing of the lateness
     evidence.weights.of[RecordSource::data] = 0.0;
     evidence.late = corrected.samples;
     evidence.late_cvs = corrected.cvs;
   }
 }
 
-/// The record as it is judged, without the simulated ones beside it.
+/// Judges the record without the simulated records beside it.
 std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Study& study,
                                          const QpSolverFactory& factory, RecordAssessment& assessment) {
   assessment.warnings = check_record(study, assessment.record);
@@ -286,7 +287,7 @@ std::shared_ptr<const RecordFrame> judge(const AssessOptions& options, const Stu
       checked = judged_by(*frame, {kModelCheck}, assessment.record);
   }
   std::vector<std::string> methods = with_verdict_first(options.methods);
-  methods.emplace_back(kOdds);  // the verdict has asked for them, so that they cost nothing
+  methods.emplace_back(kOdds);  // `mpmbench` asks for them anyway, so they cost nothing
   JudgedRecord judged = judged_by(*frame, methods, assessment.record);
   for (const std::string& asked : options.methods)
     assessment.said.push_back(judged.said[static_cast<std::size_t>(
@@ -337,7 +338,7 @@ RecordAssessment assess_record(const Study& study, PlantRecord record, const Ass
       std::swap(evidence.weights.of[RecordSource::both], evidence.weights.of[RecordSource::mismatch]);
     if (assessment.trial) {
       const RecordVerdict::Model model = record_verdict(evidence).model;
-      // No simulated record drifts: how often that is right is not known.
+      // No simulated record drifts, so nobody knows how often that answer is right.
       evidence.trials = assessment.trial->counts =
           counts_of(model.drifts ? RecordSource::sensor : model.source);
     }

@@ -19,20 +19,20 @@ namespace mpm {
 /// How a record is assessed.
 struct AssessOptions {
   std::vector<std::string> methods{"mpmbench"};  ///< shown beside the verdict, which is that of `mpmbench`
-  /// Standard deviation of the errors that a healthy model may have, of gain, time constants and dead time of
+  /// Standard deviation of the errors that a healthy model may have in gain, time constants and dead time of
   /// every channel; 0: the model is exact.
   double model_error = 0.05;
   int trials = 200;  ///< simulated records like this one; 0: none
   std::optional<MonitoringOptions> monitoring = {};
-  ForEachWithSolver for_each = {};  ///< runs the loops that say what repairs bring; empty: in turn
+  ForEachWithSolver for_each = {};  ///< runs the loops that estimate what repairs bring; empty: one by one
 };
 
-/// The record, read under `study`, as its methods see it: the nominal loop under what moved the plant, the
-/// answers, the check of the model and of the controller, the simulated records beside it, what a repair of
-/// the channel that is named would bring, and the verdict. `run_trials` runs the simulated records; without
-/// them, or where they cannot be run, RecordAssessment::no_trial says why. Errors: InputError for a record
-/// that the study cannot explain: units, limits, a controller without a model, too few samples; what
-/// `run_trials` throws besides InputError.
+/// Assesses a record that was read under `study`. The result has the nominal loop under what moved the plant,
+/// the answers of the methods, the checks of model and controller, the simulated records beside it, what a
+/// repair of the named channel would bring, and the verdict. `run_trials` runs the simulated records; if
+/// there are none, RecordAssessment::no_trial says why. Throws InputError for a record that the study cannot
+/// explain: units, limits, a controller without a model, too few samples. Errors of `run_trials` other than
+/// InputError are passed on.
 RecordAssessment assess_record(const Study& study, PlantRecord record, const AssessOptions& options,
                                const QpSolverFactory& factory, const TrialRunner& run_trials);
 

@@ -26,7 +26,7 @@ bool needs_every_sample(const RecordFrame& frame, const std::string& method) {
   return method_table(frame.as_kept.assessment).method(method).requirements.complete_record;
 }
 
-/// Takes out the samples of the CVs whose past is unknown.
+/// Removes the samples of the CVs that have an unknown past.
 void leave_out_unknown(const RecordFrame& frame, const std::vector<bool>& unknown, Eigen::MatrixXd& y) {
   Eigen::Index known = frame.settling;  // samples since the last unknown one
   for (std::size_t k = 0; k < unknown.size(); ++k) {
@@ -36,7 +36,7 @@ void leave_out_unknown(const RecordFrame& frame, const std::vector<bool>& unknow
   }
 }
 
-/// What no record can tell of the errors of a CV, by least squares over the samples that are there.
+/// The part of the errors of a CV that no record can tell, by least squares over the samples that are there.
 Eigen::VectorXd untold(const Eigen::VectorXd& e, const Eigen::MatrixXd& columns) {
   const auto is_there = !e.array().isNaN();
   if (is_there.count() <= 2 * columns.cols())
@@ -46,8 +46,8 @@ Eigen::VectorXd untold(const Eigen::VectorXd& e, const Eigen::MatrixXd& columns)
   return columns * left.completeOrthogonalDecomposition().solve(right);
 }
 
-/// Columns that span what these do, over the samples that are there at right angles and with a mean square of
-/// 1: two memories that are nearly alike differ in what is faint in each.
+/// Columns with the same span, made orthogonal and with a mean square of 1 over the samples that are there:
+/// two memories that are nearly alike differ only faintly.
 Eigen::MatrixXd alike(const Eigen::VectorXd& e, const Eigen::MatrixXd& columns) {
   constexpr double kSame = 1e-8;  // singular values, over the largest
   const auto is_there = !e.array().isNaN();
@@ -142,8 +142,8 @@ AssessedLoop judged_loop(const RecordFrame& frame, const PlantRecord& record) {
     const Eigen::VectorXd e = (loop.y.row(cv) - loop.y_sim.row(cv)).transpose();
     const Eigen::MatrixXd columns = untold_columns(study, cv, starts, e.size());
     Eigen::VectorXd explained = untold(e, columns);
-    if (study.plant.G.is_integrating(
-            cv))  // before the washout a constant is a ramp, and nothing before a record
+    // A constant here is a ramp before the washout, and there is none before the record.
+    if (study.plant.G.is_integrating(cv))
       explained.head(samples_before(e)).setZero();
     loop.y_sim.row(cv) += explained.transpose();
     loop.untold.emplace_back(alike(e, columns).transpose());

@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// The record since something is wrong: what was before counts in no repair.
+/// The record since the onset of the fault: earlier samples count in no repair.
 AssessedLoop since_onset(const RecordAssessment& assessment) {
   AssessedLoop loop = assessment.loop;
   if (assessment.verdict.model.since)
@@ -23,7 +23,7 @@ AssessedLoop since_onset(const RecordAssessment& assessment) {
   return loop;
 }
 
-/// The samples at which some CV is judged: no others count in what a repair would bring.
+/// The samples at which some CV is judged: only these count in what a repair would bring.
 std::vector<bool> counted_samples(const AssessedLoop& loop) {
   std::vector<bool> counted(static_cast<std::size_t>(loop.samples()));
   for (std::size_t k = 0; k < counted.size(); ++k)
@@ -31,9 +31,11 @@ std::vector<bool> counted_samples(const AssessedLoop& loop) {
   return counted;
 }
 
-/// The channel that the verdict would repair: that of the mismatch that `mpmbench` names, or else
-/// `likelihood`, or else the first one that they name at the dearest CV, or else the likeliest one. It is
-/// identified again where the errors that the model has beside it are known by their size.
+/// Repairs the channel of the mismatch that `mpmbench` names, or else the channel that `likelihood` names, or
+/// else the one that `mpmbench` names without a mismatch. If the mismatch is not at the CV that the verdict
+/// names, the first channel that the answer names at that CV is repaired instead. If neither names a channel,
+/// the likeliest one is repaired. If the model has errors of known size, the channel is identified again
+/// beside them.
 std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const AssessedLoop& loop,
                                        const RecordFrame& frame,
                                        const std::optional<NamedMismatch>& likeliest) {
@@ -60,8 +62,8 @@ std::optional<ChannelRepair> repair_of(const RecordAssessment& assessment, const
   return channel_repair(study, point, loop, *answer);
 }
 
-/// What the repair says of the channel, as a mismatch: of one that was identified again as a whole its gain,
-/// where that is not the model's.
+/// The repair of a channel as a mismatch. For a channel that was identified again as a whole, this is its
+/// gain if it differs from the model's.
 NamedMismatch mismatch_of(const ChannelRepair& repair) {
   if (repair.named)
     return *repair.named;

@@ -8,12 +8,13 @@
 
 namespace mpm {
 
-/// Puts what the corrected channel promises into the assessment, when the verdict is about the model, and
-/// what the repair of each channel would bring.
+/// If the verdict is about the model, adds to the assessment what the corrected channel promises, and what
+/// the repair of each channel would bring.
 void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictEvidence& evidence);
 
-/// Is nothing left but the usual background, once the channel of the repair is as it is? Of a fault that
-/// begins within the record its later half counts, in which it has grown.
+/// Returns whether only the usual background is left once the channel of the repair is corrected. If the
+/// fault begins within the record, only the later half of the samples since then counts, in which it has
+/// grown.
 bool is_mismatch_alone(const RecordAssessment& assessment, const RecordFrame& frame);
 
 }  // namespace mpm

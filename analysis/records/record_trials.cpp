@@ -25,7 +25,7 @@
 namespace mpm {
 namespace {
 
-/// The gaps of the record, which those of the simulated ones are.
+/// The gaps of the record, which the simulated records have as well.
 std::string shape_text(const PlantRecord& record) {
   std::string shape;
   for (Eigen::Index k = 0; k < record.samples(); ++k)
@@ -34,7 +34,7 @@ std::string shape_text(const PlantRecord& record) {
   return shape;
 }
 
-/// What decides on the answers on simulated records beside their study.
+/// Describes what the answers on simulated records depend on besides their study.
 std::string judged_text(const RecordFrame& frame, const TrialFrame& made, std::string_view seen) {
   return fmt::format(
       "judged as the record {} is: {} samples before it, {} not judged, {:g} of the noise as "
@@ -46,8 +46,8 @@ std::string judged_text(const RecordFrame& frame, const TrialFrame& made, std::s
       frame.since);
 }
 
-/// From what simulated records are made: with a model that may be wrong they begin midway where the record
-/// does.
+/// The frame from which simulated records are made. If the model may be wrong and the record begins in the
+/// middle of operation, the simulated records do so as well.
 TrialFrame trial_frame(const RecordAssessment& assessment, const RecordFrame& frame, const Study& study,
                        int trials) {
   constexpr Eigen::Index kLongLead = 2;  // settling times
@@ -68,20 +68,20 @@ TrialFrame trial_frame(const RecordAssessment& assessment, const RecordFrame& fr
   return made;
 }
 
-/// Does any method name this one?
+/// Returns whether some method can name this source.
 bool is_named_by_methods(RecordSource source) {
   return source == RecordSource::mismatch || source == RecordSource::disturbance ||
          source == RecordSource::both || source == RecordSource::valve;
 }
 
-/// The methods that every simulated record is asked for. The first one costs more than all else, and only its
-/// sources count, where the model does not explain the record.
+/// The methods that assess every simulated record: all but the first one, which costs more than all else.
+/// Only its sources count, and only for records that the model does not explain.
 std::vector<std::string> asked_of_all(const RecordFrame& frame) {
   return {frame.methods.begin() + 1, frame.methods.end()};
 }
 
-/// Asks the first method of the frame of the loops `unexplained` only, and the others of all; null: all of
-/// all.
+/// Asks the first method of the frame about the loops `unexplained` only, and the other methods about all
+/// loops; null: every method about all loops.
 LoopAssessor source_assessor(const RecordFrame& frame, const std::shared_ptr<const TrialFrame>& made,
                              const std::vector<std::string>& methods,
                              std::shared_ptr<const std::set<std::int64_t>> unexplained) {

@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kHalfAGain = 0.5;  ///< an error of a gain that a record must show, or it tells nothing
+constexpr double kHalfAGain = 0.5;  ///< a record that would not show this error of a gain tells nothing
 
 const CvCost* cost_of(const std::vector<CvCost>& costs, Eigen::Index cv) {
   const auto found =
@@ -23,8 +23,8 @@ bool costs_more(const CvCost& a, const CvCost& b) {
   return a.is_dearer() != b.is_dearer() ? a.is_dearer() : a.ratio > b.ratio;
 }
 
-/// The CVs that the model does not explain: those that cost more first, the dearest first, and then the one
-/// furthest off.
+/// The CVs that the model does not explain: first the dearer ones by falling ratio, then the others by
+/// falling score.
 std::vector<UnexplainedPart> unexplained_parts(const VerdictEvidence& evidence,
                                                const std::vector<CvCost>& costs) {
   std::vector<UnexplainedPart> parts = evidence.noisy;
@@ -183,7 +183,7 @@ RecordVerdict::Action action_on(const VerdictEvidence& evidence, const RecordVer
   return {.kind = ActionKind::test};
 }
 
-/// A gain and changes of variances that point the same way, or the gain alone.
+/// Keeps the changes of variances if they point the same way as the gain; otherwise keeps the gain alone.
 std::optional<PromisedGain> in_agreement(std::optional<PromisedGain> promise) {
   if (!promise || promise->variance_ratio.size() == 0)
     return promise;
@@ -194,7 +194,7 @@ std::optional<PromisedGain> in_agreement(std::optional<PromisedGain> promise) {
   return promise;
 }
 
-/// What becomes of the best period where none is in use.
+/// Decides what becomes of the best period if no benchmark is in use.
 RecordBenchmark decided_benchmark(const VerdictEvidence& evidence, ModelAnswer answer) {
   RecordBenchmark benchmark = evidence.benchmark;
   if (benchmark.use == BenchmarkUse::named || benchmark.use == BenchmarkUse::found)

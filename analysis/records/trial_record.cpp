@@ -16,15 +16,15 @@
 namespace mpm {
 namespace {
 
-/// Sample k - 1 stays where it was at the unknown sample k.
+/// Holds the value of sample k - 1 at each unknown sample k.
 void hold_unknown(const std::vector<bool>& unknown, Eigen::MatrixXd& signals) {
   for (std::size_t k = 1; k < unknown.size(); ++k)
     if (unknown[k])
       signals.col(static_cast<Eigen::Index>(k)) = signals.col(static_cast<Eigen::Index>(k) - 1);
 }
 
-/// What moves a CV by one standard deviation of its noise, one that integrates as methods see it: the least
-/// over the CVs of each MV; 0 where an MV moves none.
+/// The change of each MV that moves a CV by one standard deviation of its noise: the least over the CVs, or 0
+/// if the MV moves none. A CV that integrates counts as methods see it.
 Eigen::VectorXd noise_in_mvs(const Study& study) {
   const Eigen::MatrixXd gain = study.assessed_model().static_gain().leftCols(study.mv_count());
   Eigen::VectorXd least = Eigen::VectorXd::Constant(study.mv_count(), kInfinity);
@@ -36,7 +36,7 @@ Eigen::VectorXd noise_in_mvs(const Study& study) {
   return least.array().isFinite().select(least, 0.0);
 }
 
-/// Each row off by up to `most` of its size.
+/// Adds to each row a constant of up to `most` times its size, up or down.
 void add_biases(const Eigen::VectorXd& size, double most, RandomStream& stream, Eigen::MatrixXd& signals) {
   for (Eigen::Index row = 0; row < signals.rows(); ++row)
     signals.row(row).array() += most * size(row) * (2.0 * stream.uniform() - 1.0);
@@ -72,7 +72,7 @@ PlantRecord trial_record(const TrialFrame& frame, const ExperimentDraw& draw, co
   record.y_sim.setConstant(kNaN);
   if (record.candidates.size() > 0)
     record.candidates = logged_candidates(frame.study, draw).rightCols(N);
-  // The gaps are those of the record, so that their random numbers are free.
+  // The gaps are those of the record, so their random numbers are free for the biases.
   RandomStream stream = experiment_stream(frame.study, draw.index, StreamId::missing);
   add_biases(frame.study.simulation.noise_standard_deviation, frame.bias, stream, record.y);
   add_biases(noise_in_mvs(frame.study), frame.bias, stream, record.u);

@@ -8,10 +8,10 @@
 namespace mpm {
 namespace {
 
-constexpr double kFarLarger = 2.0;  // mean squares
-constexpr double kAlike = 0.02;     // of a time constant: two channels settle alike
+constexpr double kFarLarger = 2.0;  // ratio of mean squares
+constexpr double kAlike = 0.02;     // of a time constant: two channels that differ less settle alike
 
-/// Time constants of the channels of a CV, those that are alike once, in samples.
+/// The time constants of the channels of a CV, in samples. Those that are alike appear once.
 std::vector<double> memories_of(const Study& study, Eigen::Index cv) {
   std::vector<double> all;
   for (Eigen::Index input = 0; input < study.plant.G.cols(); ++input)
