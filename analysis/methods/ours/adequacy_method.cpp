@@ -28,12 +28,12 @@ OptionKeys keys(AdequacyOptions& options) {
                  "number of channels whose repair is simulated: those whose error explains most of a CV")};
 }
 
-/// Is the model still in the set of models with which this controller performs adequately (Mesbah, Bombois,
-/// Ludlage and Van den Hof, "Experiment design for batch-to-batch model-based learning control" and
-/// "Closed-loop performance diagnosis using prediction error identification", 2011 and 2012)? They bound the
-/// set by a frequency-domain condition; here it is asked of the loop itself. The model is inadequate when
-/// P(gain > worth) of some channel is above `probability` (RepairProspects). It asks neither for a benchmark
-/// nor what is new.
+/// Tests whether the model is still in the set of models with which this controller performs adequately
+/// (Mesbah, Bombois, Ludlage and Van den Hof, "Experiment design for batch-to-batch model-based learning
+/// control" and "Closed-loop performance diagnosis using prediction error identification", 2011 and 2012).
+/// They bound the set by a frequency-domain condition; here the simulated loop itself decides. The model is
+/// inadequate if P(gain > worth) of some channel is above `probability` (RepairProspects). The method needs
+/// no benchmark and does not ask what is new.
 class Adequacy final : public AssessmentMethod {
  public:
   explicit Adequacy(const AssessmentContext& context)
@@ -57,7 +57,7 @@ class Adequacy final : public AssessmentMethod {
       const Channel& channel = prospect.repair.channel;
       if (sorted.empty())
         continue;
-      // The gain that the wanted share of the draws exceeds, over what it must be worth.
+      // The gain that a share `probability` of the draws exceeds, over `worth`.
       const auto place =
           static_cast<std::size_t>((1.0 - options_.probability) * (static_cast<double>(sorted.size()) - 1.0));
       const double score = std::max(0.0, sorted[place] / options_.worth);

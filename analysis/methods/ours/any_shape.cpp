@@ -27,7 +27,7 @@ Eigen::MatrixXd with_lags(const Eigen::RowVectorXd& x) {
 std::vector<Eigen::MatrixXd> any_shape_rows(const std::vector<MismatchResponses>& responses,
                                             const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                             const Eigen::Ref<const Eigen::VectorXd>& initial) {
-  constexpr double kTwice = 2.0;  // m of twice the gain is G0 u
+  constexpr double kTwice = 2.0;  // the response to twice the gain is G0 u
   std::vector<Eigen::MatrixXd> all;
   for (const MismatchResponses& response : responses)
     if (response.prior().parameter == MismatchParameter::gain) {

@@ -8,14 +8,15 @@
 
 namespace mpm {
 
-/// What a channel whose dynamics are wrong in any way adds to the simulation error of its CV, in the span of
+/// The signals that span what a channel adds to the simulation error of its CV if its dynamics are wrong in
+/// any way:
 ///
 ///   x = G0 u,   x / (T s + 1),   T = 1, 2, 4 ... samples up to an eighth of the record
 ///
-/// as far as it is linear: 2 / (T s + 1) - 1 is an inverse response, which is also Pade's approximation of a
-/// dead time of 2 T; a further lag is one of them, and a lag that is missing a sum of a few. A coefficient of
-/// 1 is an error of the size of the channel. One matrix for each channel with a gain among `responses`, rows
-/// x N, in CV units.
+/// as far as it is linear. 2 / (T s + 1) - 1 is an inverse response, which is also Pade's approximation of a
+/// dead time of 2 T; a further lag is one of these signals, and a missing lag is a sum of a few. A
+/// coefficient of 1 is an error of the size of the channel. Returns one matrix for each channel with a gain
+/// among `responses`, rows x N, in CV units.
 ///
 /// | symbol | name    | shape         |
 /// |--------|---------|---------------|

@@ -32,10 +32,10 @@ constexpr double kGolden = 0.6180339887498949;
 constexpr int kVarianceSteps = 40;
 constexpr double kMuchLess = 15.0;         // of log L
 constexpr double kNoWeightOfNoise = -6.0;  // logarithm of a posterior probability
-constexpr double kUnseen = 0.1;            // prior probability of another background than the record shows
+constexpr double kUnseen = 0.1;            // prior probability of a background that the record does not show
 constexpr std::array<Eigen::Index, 4> kNeighbours{-2, -1, 1, 2};
 
-/// All AR(1) states under white noise of a grid.
+/// A grid of AR(1) states under white noise.
 NoiseModels grid_of_models(Eigen::Index samples) {
   NoiseModels models{Eigen::ArrayXd(kTimeConstants * kRatios), Eigen::ArrayXd(kTimeConstants * kRatios), 0.0,
                      false};
@@ -51,7 +51,8 @@ NoiseModels grid_of_models(Eigen::Index samples) {
   return models;
 }
 
-/// Those under which e, what directions leave of it, is not much less likely than under the best.
+/// The models under which e, here without what directions explain, is not much less likely than under the
+/// best.
 NoiseModels likely_ones(const NoiseModels& models, const Eigen::Ref<const Eigen::MatrixXd>& e, double n) {
   const WhitenedProducts sums = whitened_products(models, e);
   const Eigen::ArrayXd log_likelihood = -0.5 * (sums.log_determinant + n * sums.of(0, 0).log());
@@ -70,7 +71,7 @@ double sample_count(const Eigen::Ref<const Eigen::RowVectorXd>& e) {
   return static_cast<double>(count);
 }
 
-/// Over the samples that are there, of which there is one.
+/// The mean square of the samples that are there; at least one is.
 double mean_square_of(const Eigen::RowVectorXd& e) {
   return e.array().isNaN().select(0.0, e.array()).square().sum() /
          static_cast<double>((!e.array().isNaN()).count());
@@ -88,7 +89,7 @@ double lag_one(const Eigen::Ref<const Eigen::RowVectorXd>& e, double mean_square
   return pairs == 0 ? 0.0 : std::clamp(sum / static_cast<double>(pairs) / mean_square, -0.95, 0.95);
 }
 
-/// What the directions Z explain of e under white noise: Z' (s^2 I + Z Z')^-1 Z e.
+/// The part of e that the directions Z explain under white noise: Z' (s^2 I + Z Z')^-1 Z e.
 Eigen::RowVectorXd explained(const Eigen::Ref<const Eigen::RowVectorXd>& e,
                              const Eigen::Ref<const Eigen::MatrixXd>& directions, double deviation) {
   const auto observed = [&e](auto&& row) {
@@ -106,7 +107,7 @@ Eigen::RowVectorXd explained(const Eigen::Ref<const Eigen::RowVectorXd>& e,
 ///
 ///   log L = -(n log s^2 + log |I + W / s^2| + (e'e - (Ze)' (s^2 I + W)^-1 Ze) / s^2) / 2,    W = Z Z',
 ///
-/// all products of whitened series.
+/// where all products are those of whitened series.
 struct VarianceFit {
   double variance, log_likelihood;
 };
@@ -185,8 +186,8 @@ NoisePosterior noise_posterior(const Eigen::Ref<const Eigen::RowVectorXd>& e,
   Eigen::MatrixXd series(1 + q, e.size());
   series << e, directions;
   double best = -kInfinity;
-  // Those of one kind together, each with its number of parameters besides the variance, and its share of the
-  // prior.
+  // Considers all noises of one kind. They have this number of parameters besides the variance, and each has
+  // this share of the prior.
   const auto consider = [&](const NoiseModels& models, double parameters, double log_share) {
     const WhitenedProducts sums = whitened_products(models, series);
     Eigen::ArrayXd all(models.count());

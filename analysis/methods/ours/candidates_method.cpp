@@ -24,10 +24,10 @@ OptionKeys keys(CandidatesOptions& options) {
   return keys(options.regression);
 }
 
-/// Inputs that the model lacks (thesis, 8.2): do signals that are logged, and that the model does not know,
-/// help to predict the simulation errors? prewhitened_test() of e_i on each candidate alone; the candidate
-/// of the least p-value is named, in a flagged loop that of the worst CV. Each p-value is that of one of ny
-/// nc tests, nc candidates.
+/// Finds inputs that the model lacks (thesis, 8.2): tests whether logged signals that are not in the model
+/// help to predict the simulation errors. prewhitened_test() tests e_i on each candidate alone. Each CV has
+/// the candidate with the smallest p-value; a flagged loop names that of its worst CV. Each p-value counts as
+/// that of one of ny nc tests, with nc candidates.
 class Candidates final : public AssessmentMethod {
  public:
   explicit Candidates(const AssessmentContext& context)
@@ -53,7 +53,7 @@ class Candidates final : public AssessmentMethod {
   }
 
  private:
-  /// Keeps what it says about a CV where no earlier candidate says more.
+  /// Keeps the score of this candidate on each CV on which no earlier candidate has a higher one.
   void add_candidate(Eigen::Index candidate, const std::vector<Eigen::MatrixXd>& filtered,
                      const Eigen::MatrixXd& e, Assessment& assessment) const {
     const auto regressions = error_regressions(e, {filtered[static_cast<std::size_t>(candidate)]}, options_);

@@ -3,9 +3,9 @@
 
 namespace mpm {
 
-/// The likelihood of the faults that the study draws, as often and as large as it draws them. No method that
-/// is told less can do better on that study, so far as the study draws what the likelihood knows of
-/// (docs/methods.md): what it reaches is the ceiling of the leaderboard.
+/// The likelihood of the faults that the study draws; its priors are how often and how large the study draws
+/// them. No method that is told less can do better on that study, as far as the likelihood knows everything
+/// that the study draws (docs/methods.md). So its result is the ceiling of the leaderboard.
 AssessmentMethodInfo ceiling_method() {
   return {{.name = "ceiling",
            .title = "likelihood that knows the study",

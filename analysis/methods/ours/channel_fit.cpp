@@ -28,22 +28,23 @@ constexpr Eigen::Index kLargestNoiseOrder = 12;
 constexpr int kNoiseRounds =
     3;  ///< A and the channel in turn: the second round changes them by a few percent
 constexpr double kLargestTimeFactor = 8.0;
-/// Steps at which a search ends, as shares of the first ones.
+/// The steps at which a search ends, as a share of its first steps.
 constexpr double kFinestStep = 1.0 / 1024;
 constexpr int kBisections = 16;
-/// The grid, as shares of the ends of what is possible; a shift below 0: none.
+/// The points of the grid, as shares of the ranges of the search. A share of a shift below 0 stands for no
+/// shift.
 constexpr std::array kTimesOfGrid{-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75};
 constexpr std::array kShiftsOfGrid{0.0, 0.25, 0.5, 0.75, 1.0, -1.0};
 constexpr std::array kOnsetsOfGrid{0.0, 0.25, 0.5, 0.75, 1.0};
 constexpr std::array kGrowthsOfGrid{0.0, 0.5};
 
-/// The logarithm of the time factor, the shift of the dead time, and where the channel begins to be another
-/// and for how many samples it grows.
+/// The logarithm of the time factor, the shift of the dead time, the sample at which the channel begins to
+/// change, and the number of samples over which the change grows.
 using Point = std::array<double, 4>;
 using OfPoint = std::array<bool, 4>;
 enum Number : std::size_t { kOfTime, kOfShift, kOfOnset, kOfGrowth };
 
-/// Which numbers are looked for; the others are those of the model.
+/// Which numbers are searched for; the others stay those of the model.
 struct Freedom {
   bool gain = true;
   OfPoint numbers{true, true, false, false};
@@ -62,7 +63,7 @@ Freedom freedom_of(const std::optional<MismatchParameter>& only, const FitSurrou
   return freedom;
 }
 
-/// Columns about their means, which takes care of a constant.
+/// The columns about their means, which takes care of a constant.
 Eigen::MatrixXd centred(Eigen::MatrixXd columns) {
   for (auto column : columns.colwise())
     column.array() -= column.mean();
@@ -96,10 +97,10 @@ class ChannelSearch {
     take(fit_autoregression(e_ + of_model_, 0), deviation_of_steps(e_.transpose()));
   }
 
-  /// The channel as the model has it, where it begins to be another in the middle of what is possible.
+  /// The channel as the model has it, with its onset in the middle of the possible range.
   Point of_model() const { return {0.0, 0.0, 0.5 * (least_[kOfOnset] + largest_[kOfOnset]), 0.0}; }
 
-  /// Fits the noise to what the channel at `point` leaves, and what is unknown beside it.
+  /// Fits the noise to what is left by the channel at `point` and by what is unknown beside it.
   void fit_noise(const Point& point) {
     const Whitened white = whitened(point);
     const double gain = gain_of(white);
@@ -111,7 +112,7 @@ class ChannelSearch {
     take(std::move(noise), std::sqrt((w.array() - w.mean()).square().mean()));
   }
 
-  /// The best point of a grid and `start`, and what a search finds from there.
+  /// Searches from the best point among a grid and `start`.
   Point best(const Point& start) const {
     Point best = start;
     double least = squares(best, {});
@@ -135,7 +136,7 @@ class ChannelSearch {
     return searched(best, {}, {true, true, true, true});
   }
 
-  /// Holds that the channel has been another since the start, unless an onset and a growth explain more by
+  /// Takes the channel to have been different since the start, unless an onset and a growth explain more by
   /// the BIC of two further numbers.
   void prefer_throughout(Point& point) {
     const Point start =
@@ -207,7 +208,7 @@ class ChannelSearch {
     inner_.compute(W_.transpose() * W_ + Eigen::MatrixXd::Identity(W_.cols(), W_.cols()));
   }
 
-  /// Of the channel that has gone over, r.
+  /// r, the part of the channel that has changed.
   Eigen::VectorXd part(const Point& point) const {
     Eigen::VectorXd part(u_.size());
     for (Eigen::Index k = 0; k < part.size(); ++k)
@@ -227,8 +228,8 @@ class ChannelSearch {
         .row(0);
   }
 
-  /// Both sides behind A(q), about their means, and without what is unknown: products of
-  /// w - W (I + W'W)^-1 W'w, below it -(I + W'W)^-1 W'w, are those under I + W W'.
+  /// Both sides behind A(q), about their means, and without what is unknown. Each becomes w - W (I + W'W)^-1
+  /// W'w with -(I + W'W)^-1 W'w below it, so that products are those under I + W W'.
   Whitened whitened(const Point& point) const {
     Eigen::MatrixXd both(u_.size(), 2);
     both << target(point), part(point).cwiseProduct(response(point));
@@ -256,8 +257,8 @@ class ChannelSearch {
   Eigen::LLT<Eigen::MatrixXd> inner_;  ///< I + W' W
 };
 
-/// The end of an interval: between `inside`, where `excess` is not above 0, and `bound`; the bound where it
-/// is not above 0 there either.
+/// The end of an interval, between `inside`, where `excess` is not above 0, and `bound`. It is the bound if
+/// `excess` is not above 0 there either.
 double interval_end(double inside, double bound, const std::function<double(double)>& excess) {
   if (excess(bound) <= 0.0)
     return bound;
@@ -296,8 +297,8 @@ ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
   const Eigen::VectorXd errors = e, moves = u;
   const Freedom freedom = freedom_of(only, beside);
   ChannelSearch search(nominal, sample_time, errors, moves, u_start, freedom, beside);
-  // First as if the noise were white: an autoregression of all that the model leaves would take the mismatch
-  // for noise, and the search would end where that is nearly true.
+  // The first search takes the noise to be white: an autoregression of all that the model leaves would take
+  // the mismatch for noise, and the search would end close to the model.
   Point point = search.best(search.of_model());
   for (int round = 0; round < kNoiseRounds; ++round) {
     search.fit_noise(point);

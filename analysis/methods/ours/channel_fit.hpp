@@ -30,13 +30,13 @@ struct ChannelFit {
 /// time.
 bool is_fitted_alone(MismatchParameter parameter);
 
-/// What is known of a record beside the channel that is identified.
+/// What is known about a record besides the channel that is identified.
 struct FitSurroundings {
-  /// q x N, CV unit: what e may have of other causes, each row with a coefficient of its own ~ N(0, 1).
+  /// q x N, CV unit: what other causes may add to e, each row with a coefficient of its own ~ N(0, 1).
   Eigen::MatrixXd unknown = {};
-  /// The samples between which the channel begins to be another; it may take `longest_growth` samples until
-  /// it is whole. Nothing before `earliest` is fitted. From sample 0 on it may also be so throughout. None:
-  /// it is.
+  /// The samples between which the channel begins to change; the change may grow over `longest_growth`
+  /// samples. Samples before `earliest` are not fitted. If `earliest` is 0, the channel may also have been
+  /// different throughout. No onset: it was.
   struct Onset {
     Eigen::Index earliest, latest, longest_growth;
   };
@@ -49,12 +49,13 @@ struct FitSurroundings {
 ///   e(k) + r(k) (G0 u)(k) = r(k) g (G(f, s) u)(k) + (Z' z)(k) + c + n(k),   A(q) n(k) = w(k),   z ~ N(0, I)
 ///
 /// G(f, s) is G0 with its time constants times f and its dead time longer by s, g the factor of its gain, and
-/// A the autoregression of n whose order has the least BIC: an output-error model of one channel with
-/// coloured noise, which an unmeasured disturbance is. Z is what is unknown beside it, and r the part of the
-/// channel that has gone over: 1, or 0 before an onset and 1 after the growth, a line between. g and c are
-/// the least-squares values for each (f, s, r), z is integrated out; f, s and r are found by a grid and a
-/// pattern search, A and the rest in turn. The interval of a parameter is that of its profile likelihood: the
-/// values with n ln(V / V_min) <= chi^2_1, V the least sum of squares over all others.
+/// A the autoregression of n whose order has the least BIC. This is an output-error model of one channel with
+/// coloured noise, as an unmeasured disturbance is. Z is what is unknown beside the channel, and r the part
+/// of the channel that has changed: 1 throughout, or 0 before an onset, 1 after the growth, and a line
+/// between. g and c are the least-squares values for each (f, s, r), and z is integrated out. A grid and a
+/// pattern search find f, s and r; A and the rest are fitted in turn. The interval of a parameter is that of
+/// its profile likelihood: the values with n ln(V / V_min) <= chi^2_1, V the least sum of squares over all
+/// other parameters.
 ///
 /// | symbol | name    | shape | unit        |
 /// |--------|---------|-------|-------------|
@@ -63,13 +64,13 @@ struct FitSurroundings {
 /// |        | u_start | 1     | MV, at rest before the record     |
 /// | Z      | unknown | q x N | CV                                |
 ///
-/// f is looked for in 1/8 ... 8, and s from -dead time to the dead time and residence time of G0 together, or
-/// a quarter of the record; an interval ends there, and a value there is a bound, except for a dead time of
-/// 0.
+/// f is searched for in 1/8 ... 8, and s from minus the dead time of G0 to the sum of its dead time, its
+/// residence time and a sample, or to a quarter of the record if that is less. An interval ends there, and a
+/// value there is a bound, except for a dead time of 0.
 ///
-/// If it is known which parameter is wrong, `only` (is_fitted_alone()), the others stay those of the model,
-/// so that none that the record cannot distinguish from it takes its place. Throws InputError for a channel
-/// that is zero, an MV that does not move, and a record with too few samples for the fit.
+/// If it is known which parameter is wrong, `only` names it (is_fitted_alone()). The others then stay those
+/// of the model, so that none that the record cannot distinguish from it takes its place. Throws InputError
+/// for a channel that is zero, an MV that does not move, and a record with too few samples for the fit.
 ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
                        const Eigen::Ref<const Eigen::VectorXd>& e, const Eigen::Ref<const Eigen::VectorXd>& u,
                        double u_start, double confidence, const std::optional<MismatchParameter>& only = {},

@@ -8,7 +8,7 @@ namespace mpm {
 /// of a CV.
 inline constexpr Eigen::Index kNoiseOrder = 3;
 
-/// a (`order`) of the signal r, by least squares over its samples, which follow each other.
+/// Fits a (`order` coefficients) to the signal r by least squares over its samples, which follow each other.
 Eigen::VectorXd autoregression_of(const Eigen::VectorXd& r, Eigen::Index order = kNoiseOrder);
 
 /// The columns of `signals` (N x m) less what a predicts of them; the first samples, whose past is not known,

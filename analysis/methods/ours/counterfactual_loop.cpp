@@ -30,7 +30,7 @@ Eigen::MatrixXd errors_of(const Study& study, const AssessedLoop& whole) {
   return from_washout(study, whole.y - whole.y_sim);
 }
 
-/// Each row `samples` later, along straight lines.
+/// Moves each row `samples` later, along straight lines.
 Eigen::MatrixXd later_rows(const Eigen::MatrixXd& y, double samples) {
   if (samples == 0.0)
     return y;
@@ -59,7 +59,7 @@ std::shared_ptr<CounterfactualLoop> CounterfactualLoop::of_context(const Assessm
       "", [&] { return std::make_shared<CounterfactualLoop>(context); });
 }
 
-/// v, by the same loop as that of the benchmark without noise; empty if this does not run to its end.
+/// v, from the benchmark and the same loop without noise; empty if the latter does not run to its end.
 Eigen::VectorXd CounterfactualLoop::noise_of_benchmark(const AssessmentContext& context) const {
   const Eigen::MatrixXd y_basis = gaps_closed(recorded_basis(context));
   const Study& of_basis = context.study_of_benchmark();
@@ -129,7 +129,8 @@ bool CounterfactualLoop::has_impact(double ivar, double chance) const {
   return study_.diagnosis.has_impact(ivar) && std::abs(std::log(ivar)) > chance;
 }
 
-/// Of a variance index from 1, as the study measures it to locate a CV, as far as chance does not make it.
+/// The distance of a variance index from 1, as the study measures it to locate a CV, as far as chance does
+/// not explain it.
 double CounterfactualLoop::distance(double ivar, double chance) const {
   const DiagnosisOptions& options = study_.diagnosis;
   const double from_one = distance_from_one(ivar, options.location_distance);
@@ -140,7 +141,7 @@ double CounterfactualLoop::distance(double ivar, double chance) const {
   return std::min(from_one, edge * std::abs(std::log(ivar)) / chance);
 }
 
-/// ny x N of the noise that the benchmark has shown, added to the outputs.
+/// A draw of the noise that the benchmark has shown, ny x N, to be added to the outputs.
 Eigen::MatrixXd CounterfactualLoop::drawn_noise_of(Eigen::Index samples, int draw) const {
   RandomStream random(kNoiseSeed, static_cast<std::uint64_t>(draw), StreamId::background);
   Eigen::MatrixXd noise(study_.cv_count(), samples);
@@ -202,10 +203,10 @@ Eigen::VectorXd CounterfactualLoop::noise_variance(const Eigen::VectorXd& noisy,
 }
 
 /// The loop of the controller on its model under the disturbances `d`, with `errors` added to the outputs;
-/// they and the outputs are as in rows of the record.
+/// errors and outputs are timed like the rows of the record.
 Trajectory CounterfactualLoop::simulated(const Study& study, const Eigen::MatrixXd& d,
                                          const Eigen::MatrixXd& y_set, const Eigen::MatrixXd& errors) const {
-  // Straight lines between samples would take a half of their noise away.
+  // Straight lines between samples would take away half of their noise.
   const Eigen::MatrixXd y_d = later_rows(errors, -std::trunc(late_));
   Trajectory loop = run_closed_loop(study, plant_,
                                     {.d = d,
@@ -219,8 +220,8 @@ Trajectory CounterfactualLoop::simulated(const Study& study, const Eigen::Matrix
   return loop;
 }
 
-/// The same without errors. The last one is kept: windows of a record ask for the same, and so do all records
-/// whose disturbances are those of the study.
+/// The same without errors. The last loop is kept, since the windows of a record need the same one, and so do
+/// all records with the disturbances of the study.
 const Trajectory& CounterfactualLoop::undisturbed(const AssessedLoop& whole) {
   if (nominal_.y.cols() != whole.samples() || nominal_d_ != whole.d) {
     nominal_d_ = whole.d;
@@ -229,7 +230,7 @@ const Trajectory& CounterfactualLoop::undisturbed(const AssessedLoop& whole) {
   return nominal_;
 }
 
-/// y0_diag of the record for CV `cv`, with the first draw of the noise in it if that `is_drawn`; empty if the
+/// y0_diag of the record for CV `cv`, with the first draw of the noise in this CV if `is_drawn`; empty if the
 /// loop does not run to its end.
 Eigen::MatrixXd CounterfactualLoop::disturbed_output(const AssessedLoop& whole, Eigen::Index cv,
                                                      bool is_drawn) const {
@@ -249,8 +250,7 @@ Eigen::VectorXd CounterfactualLoop::indices(const AssessedLoop& loop, const Eige
   const Eigen::MatrixXd y = loop.in_window(from_washout(study_, whole.y_sim) + errors_of(study_, whole));
   const SetpointTrajectories centres = variance_centres(study_, loop.first, loop.samples());
   const Eigen::ArrayXd of_nominal = variance_indices(y, loop.in_window(nominal), centres);
-  // A v below 0 can outweigh a y0 that hardly moves: the nominal variance is not taken for less than a
-  // tenth of its own.
+  // A v below 0 can outweigh a y0 that hardly moves, so var y0 + v counts as at least a tenth of var y0.
   const Eigen::ArrayXd inverse = of_nominal.inverse() + added.array() / variances(y, centres).array();
   return inverse.max(kLeastNominalShare * of_nominal.inverse()).inverse();
 }

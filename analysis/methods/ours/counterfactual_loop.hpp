@@ -23,7 +23,7 @@ enum class NoiseVariance : std::int8_t {
   none = 2,        ///< v = 0
 };
 
-/// Of the method `counterfactual`, analysis/methods/ours/counterfactual_method.
+/// Options of the method `counterfactual`, analysis/methods/ours/counterfactual_method.
 struct CounterfactualOptions {
   NoiseVariance noise = NoiseVariance::difference;
 
@@ -37,29 +37,30 @@ struct CounterfactualOptions {
 ///   y0_diag = the same for CV i when the recorded errors e_j of all other CVs are added to the outputs of G0
 ///   Ivar = var y / (var y0 + v),   Ivar_diag = var y_i / (var y0_diag,i + v_i),   v = var y_b - var y0_b
 ///
-/// where the G0 that stands for the plant is corrected by what the benchmark shows of its errors
-/// (learnt_model()), as in (3.24) and (4.14), but exact also where the loop leaves limits and
-/// reaches them again, for which no linear S0 exists: with the errors of all CVs added, the loop returns y. y
-/// contains noise and y0 does not; v is what noise adds to the variance, taken from the basis case y_b of the
-/// same controller (NoiseVariance has other choices). Gaps of e are filled by linear interpolation. For
-/// windows, the record is simulated once from its start. Where the rows of the record are late by l against
-/// the inputs (LearntModel::late()), the loop is simulated without this delay, and its outputs are compared
-/// as the rows of such a record: with x the output of G0 alone, y0_diag(k) = x(k - l) + e(k), where e has
-/// acted in the loop l earlier, in whole samples.
+/// The G0 that stands for the plant is corrected by what the benchmark shows of its errors (learnt_model()).
+/// The equations are those of (3.24) and (4.14), but exact also if the loop leaves limits and reaches them
+/// again, for which no linear S0 exists: with the errors of all CVs added, the loop returns y. y contains
+/// noise and y0 does not; v is what noise adds to the variance, taken from the basis case y_b of the same
+/// controller (NoiseVariance has other choices). Gaps of e are filled by linear interpolation. For windows,
+/// the record is simulated once from its start. If the rows of the record are late by l against the inputs
+/// (LearntModel::late()), the loop is simulated without this delay, and its outputs are then made as late as
+/// the rows of the record: with x the output of G0 alone, y0_diag(k) = x(k - l) + e(k), where e has acted in
+/// the loop l earlier, in whole samples.
 ///
-/// v is of one realisation of the noise and of the excitation of the benchmark. A level that is free in its
-/// range has another variance in each record, and noise makes it smaller as often as larger. So, where errors
-/// of the model and its noise are learnt, an Ivar outside of the band is looked at again: the nominal loop is
-/// simulated under kNoiseDraws draws of that noise, with m the mean of var y0 over them and s the standard
-/// deviation of log var y0,
+/// v comes from one realisation of the noise and of the excitation of the benchmark. A level that is free in
+/// its range has a different variance in each record, and noise makes it smaller as often as larger. So, if
+/// errors of the model and its noise are learnt, an Ivar outside of the band is checked again: the nominal
+/// loop is simulated under kNoiseDraws draws of that noise. With m the mean of var y0 over them and s the
+/// standard deviation of log var y0,
 ///
 ///   Ivar = var y / m,   c = s sqrt(1 + 1 / kNoiseDraws) t,   Ivar_diag = var y_i / var y0_diag,i
 ///
-/// y0_diag with the first draw in CV i; t is the quantile of Student's distribution beyond which chance alone
-/// takes some CV with the probability kChance. An impact needs |log Ivar| > c, and the distance of Ivar from
-/// 1 counts as min(distance, a |log Ivar| / c) with a that of the edge of the band.
+/// y0_diag has the first draw in CV i; t is the quantile of Student's distribution beyond which chance alone
+/// takes some CV with the probability kChance. An impact needs |log Ivar| > c. The distance of Ivar from 1
+/// counts as min(distance, a |log Ivar| / c), with a the distance of the edge of the band.
 ///
-/// All methods under one context share one (of_context()), and with it the loops that it has simulated.
+/// All methods under one context share one object (of_context()), and with it the loops that it has
+/// simulated.
 class CounterfactualLoop {
  public:
   /// The verdict of Ivar on a loop.
@@ -73,11 +74,11 @@ class CounterfactualLoop {
   /// `context` must outlive it.
   explicit CounterfactualLoop(const AssessmentContext& context);
 
-  /// That of the context, AssessmentContext::derived.
+  /// The shared object of the context, in AssessmentContext::derived.
   static std::shared_ptr<CounterfactualLoop> of_context(const AssessmentContext& context);
 
-  /// Simulates one closed loop, and kNoiseDraws more if an Ivar is outside; none of them if the disturbances
-  /// are those of the record before.
+  /// Simulates one closed loop, and kNoiseDraws more if an Ivar is outside of the band; none of them if the
+  /// disturbances are those of the previous record.
   Impact impact(const AssessedLoop& loop);
 
   /// Ivar_diag of each CV, ny; NaN if its loop does not run to its end. Simulates one closed loop for each
@@ -92,7 +93,7 @@ class CounterfactualLoop {
   static constexpr int kNoiseDraws = 16;
   static constexpr double kChance = 0.01;
 
-  /// Ivar of each CV and what chance makes of it.
+  /// Ivar of each CV, and c, how far chance alone takes |log Ivar|.
   struct Indices {
     Eigen::VectorXd ivar, chance;
   };
@@ -118,10 +119,10 @@ class CounterfactualLoop {
   double late_;           ///< by how many samples rows of CVs are late; below 0: early
   QpSolverFactory factory_;
   Eigen::MatrixXd y_set_, dither_;
-  Eigen::MatrixXd nominal_d_;             ///< under which `nominal_` was simulated
-  Trajectory nominal_;                    ///< that of y0; empty before the first record
-  Eigen::MatrixXd drawn_d_;               ///< under which `drawn_y_` was simulated
-  std::vector<Eigen::MatrixXd> drawn_y_;  ///< y0 under each draw; empty where one does not run to its end
+  Eigen::MatrixXd nominal_d_;             ///< disturbances under which `nominal_` was simulated
+  Trajectory nominal_;                    ///< the loop of y0; empty before the first record
+  Eigen::MatrixXd drawn_d_;               ///< disturbances under which `drawn_y_` was simulated
+  std::vector<Eigen::MatrixXd> drawn_y_;  ///< y0 under each draw; empty if one does not run to its end
   Eigen::VectorXd noise_;                 ///< v of each CV; empty when the basis case cannot be simulated
 };
 

@@ -14,7 +14,7 @@ OptionKeys keys(CounterfactualOptions& options) {
                       "limits. `\"positive\"`: the same, but at least 0. `\"none\"`: 0")};
 }
 
-/// The impact by CounterfactualLoop; of a flagged loop, that of each CV.
+/// Finds the impact by CounterfactualLoop and, in a flagged loop, that on each CV.
 class Counterfactual final : public AssessmentMethod {
  public:
   explicit Counterfactual(const AssessmentContext& context)

@@ -13,14 +13,14 @@
 namespace mpm {
 namespace {
 
-/// Lags of the errors of other CVs beside those of a CV, and of all CVs in input_dependence(). Chosen, as
-/// what else of the noise is, on records of others' plants under the seeds 83 and 84
-/// (tests/reliability/records.py).
+/// Largest lags of the errors of other CVs beside those of a CV, and of the errors of all CVs in
+/// input_dependence(). They were chosen, like the other constants of the noise, on records of others' plants
+/// under the seeds 83 and 84 (tests/reliability/records.py).
 constexpr Eigen::Index kOtherLags = 6, kOwnLags = 12;
 
 constexpr int kFits = 3;
-constexpr Eigen::Index kFewestInPart = 50;  ///< to either side of a change of the noise
-constexpr double kRounding = 1e-14;         ///< of the mean square of the errors: less left is none
+constexpr Eigen::Index kFewestInPart = 50;  ///< samples on either side of a change of the noise
+constexpr double kRounding = 1e-14;  ///< of the mean square of the errors: if less is left, it counts as this
 
 constexpr Eigen::Index kLags = kErrorOrder + 1, kLagPairs = kLags * (kLags + 1) / 2;
 
@@ -34,7 +34,7 @@ Columns basis_of(const Columns& A) {
   return Eigen::HouseholderQR<Columns>(A).householderQ() * Columns::Identity(A.rows(), A.cols());
 }
 
-/// Which errors of a CV in the same sample and in those before tell of a disturbance.
+/// The lags, from the same sample on, at which errors of a CV tell about a disturbance.
 struct PastErrors {
   Eigen::Index cv, first, last;  ///< lags
 };
@@ -55,16 +55,16 @@ Columns past_errors(const AssessedLoop& loop, const std::vector<PastErrors>& ask
   return past;
 }
 
-/// `lags`, or fewer: of `samples` there are ten times as many as columns.
+/// Returns `lags`, or fewer, so that there are ten times as many `samples` as columns.
 Eigen::Index fitting_lags(const AssessedLoop& loop, Eigen::Index samples, Eigen::Index lags) {
   constexpr Eigen::Index kSamplesToColumn = 10;
   return std::clamp<Eigen::Index>(samples / (kSamplesToColumn * loop.y.rows()), 1,
                                   std::min(lags, loop.samples() - 1));
 }
 
-/// What a disturbance that reaches several CVs shows of this one, which has `samples`, in the others: their
-/// errors before, and of those above it in the same sample, too, so that errors of one sample that are alike
-/// count once.
+/// The errors of other CVs, which show a disturbance that reaches several CVs, for a CV that has `samples`:
+/// their errors before, and for the CVs above it also those in the same sample, so that errors of one sample
+/// that are alike count once.
 Columns others_errors(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index samples) {
   const Eigen::Index lags = fitting_lags(loop, samples, kOtherLags);
   std::vector<PastErrors> asked;
@@ -74,7 +74,8 @@ Columns others_errors(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index sa
   return past_errors(loop, asked);
 }
 
-/// What the controller knows of a disturbance of any shape in a CV that has `samples`.
+/// The past errors of all CVs: what the controller knows of a disturbance of any shape, for a CV that has
+/// `samples`.
 Columns known_errors(const AssessedLoop& loop, Eigen::Index samples) {
   const Eigen::Index lags = fitting_lags(loop, samples, kOwnLags);
   std::vector<PastErrors> asked;
@@ -83,22 +84,22 @@ Columns known_errors(const AssessedLoop& loop, Eigen::Index samples) {
   return past_errors(loop, asked);
 }
 
-/// A part with a hypothesis T in it, and the noise that it has: an autoregression a, and the mean square of
-/// its innovations.
+/// A part of the record under a hypothesis T, and the noise in it: an autoregression a, and the mean square
+/// of its innovations.
 struct PartUnderHypothesis {
   const LaggedProducts& known;  ///< of Z = [X E_i e]
   LaggedProducts across, own;   ///< of Z and T, of T and T
   Eigen::VectorXd a;
   double count = 0.0, least = 0.0, variance = 0.0;
 
-  /// Z x + T y is noise, of the autoregression a.
+  /// Starts with Z x + T y as the noise, of the autoregression a.
   void start(const Eigen::VectorXd& x, const Eigen::VectorXd& y, Part part) {
     count = static_cast<double>(part.first + part.count - std::max(part.first, kErrorOrder));
     least = std::max(1e-300, kRounding * lagged(x, y)(0, 0) / count);
     take(x, y, false);
   }
 
-  /// Takes the variance that Z x + T y has beside a, and then the a that it has.
+  /// Takes the variance of Z x + T y under a and then, if it `fits`, the a of Z x + T y.
   void take(const Eigen::VectorXd& x, const Eigen::VectorXd& y, bool fits) {
     const Eigen::MatrixXd R = lagged(x, y);
     Eigen::VectorXd factors(kLags);
@@ -111,8 +112,8 @@ struct PartUnderHypothesis {
     a = past.ldlt().solve(R.col(0).tail(kErrorOrder));
   }
 
-  /// Those of the p columns of Z before e and of the q first ones of T; any further one of T is h, and the
-  /// right side (p + q) that of e - h.
+  /// The normal equations of the p columns of Z before e and the first q columns of T. If T has one more,
+  /// that is h, and the right side (p + q) is that of e - h.
   Columns normal_equations(Eigen::Index p, Eigen::Index q, Eigen::VectorXd& right) const {
     const Columns of_known = known.whitened_by(a), of_both = across.whitened_by(a),
                   of_own = own.whitened_by(a);
@@ -130,7 +131,7 @@ struct PartUnderHypothesis {
   }
 
  private:
-  /// Products of Z x + T y late by l and m samples.
+  /// Products of Z x + T y, one late by l samples and the other by m.
   Eigen::MatrixXd lagged(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const {
     Eigen::VectorXd pairs = known.of(x, x);
     if (y.size() > 0)
@@ -149,8 +150,8 @@ LaggedProducts::LaggedProducts(const Columns& A, const Columns& B, Part part)
     : rows_(A.cols()), columns_(B.cols()), pairs_(rows_ * columns_, kLagPairs) {
   const Eigen::Index end = part.first + part.count, first = std::max(part.first, kErrorOrder);
   const Eigen::Index count = end - first, before = first - kErrorOrder;
-  // B late by the lags -6 ... 6 beside A, whose rows begin at `before`: of A_0' B_m the samples from `first`
-  // on, of A_l' B_0 those from `first` - l on.
+  // `shifted` has B late by the lags -6 ... 6 beside the rows of A from `before` on: for A_0' B_m the samples
+  // from `first` on, for A_l' B_0 those from `first` - l on.
   Columns shifted = Columns::Zero(count + kErrorOrder, (2 * kLags - 1) * columns_);
   for (Eigen::Index lag = 0; lag < kLags; ++lag) {
     shifted.middleCols((kErrorOrder + lag) * columns_, columns_).bottomRows(count) =
@@ -159,8 +160,8 @@ LaggedProducts::LaggedProducts(const Columns& A, const Columns& B, Part part)
         B.middleRows(first, count);
   }
   const Columns sums = A.middleRows(before, count + kErrorOrder).transpose() * shifted;
-  // A_l' B_m for the difference m - l, and for that of the other sign; one sample later one enters at the
-  // start, and one leaves at the end.
+  // Goes from A_l' B_m to the next pair of lags with the same difference m - l: one sample enters at the
+  // start, and one leaves at the end. `below` has the difference with the other sign.
   const auto slid = [&](Columns& sum, Eigen::Index l, Eigen::Index m) {
     sum += A.row(first - 1 - l).transpose() * B.row(first - 1 - m) -
            A.row(end - 1 - l).transpose() * B.row(end - 1 - m);
@@ -263,7 +264,7 @@ void CvErrors::find_change() {
 double CvErrors::dependence(const AssessedLoop& loop, const Eigen::RowVectorXd& h, const Columns& free,
                             const Columns& moves) const {
   constexpr double kChance = 0.01;  // over all CVs
-  constexpr double kSame = 1e-10;   // eigenvalues of what the moves have beside the past, over the largest
+  constexpr double kSame = 1e-10;   // eigenvalues of what the past leaves of the moves
   if (is_too_short())
     return kNaN;
   const Columns past = known_errors(loop, Xe_.rows());
@@ -314,7 +315,7 @@ Columns CvErrors::told(Columns signals) const {
 
 double CvErrors::settled(std::vector<NoisePart>& parts) const {
   constexpr int kMostRounds = 10;
-  constexpr double kNext = 0.05;  // of L
+  constexpr double kNext = 0.05;  // of L: a round that gains less is the last
   double most = -kInfinity;
   for (int round = 0; round < kMostRounds; ++round) {
     const Fit best = fit(parts, Columns(Xe_.rows(), 0), 0);
@@ -334,7 +335,8 @@ CvErrors::Fit CvErrors::fit(const std::vector<NoisePart>& parts, const Columns& 
     return best;
   const Eigen::Index p = Xe_.cols() - 1, own = p - errors_, q = free, all_own = std::ssize(parts) * own,
                      unknown = errors_ + all_own + q;
-  // [X E_i e] x + [F h] y is left: e - h at first. The unknown a, the b of each part, and those of F.
+  // What is left is [X E_i e] x + [F h] y, at first e - h. The unknowns are a, the b of each part, and the
+  // coefficients of F.
   Eigen::VectorXd x = Eigen::VectorXd::Unit(p + 1, p), y = Eigen::VectorXd::Zero(hypothesis.cols());
   y.tail(hypothesis.cols() - q).setConstant(-1.0);
   std::vector<PartUnderHypothesis> all;
