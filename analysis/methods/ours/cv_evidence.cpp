@@ -15,12 +15,13 @@
 namespace mpm {
 namespace {
 
-/// Gains of log L below which a fault is not worth a closer look, and drops from the best below which it is.
+/// Differences of log L. A fault that gains less than kFaint, or kWorthALook, is not worth a closer look, and
+/// neither is one that is kLost behind the best.
 constexpr double kFaint = 5.0, kWorthALook = 2.0, kLost = 12.0;
 constexpr std::size_t kMostLooks = 4;
-constexpr int kMostSteps = 4;       // of a size that is refined
-constexpr double kStill = 0.3;      // in its standard deviations
-constexpr double kNarrow = 0.2;     // of what is possible, below which a slope says all of m
+constexpr int kMostSteps = 4;    // of the refinement of a size
+constexpr double kStill = 0.3;   // a size that moves by less stands still, in its standard deviations
+constexpr double kNarrow = 0.2;  // of the possible range: in a narrower posterior the slope says all about m
 constexpr double kNoWeight = 1e-9;  // of a part of the posterior
 
 /// SSE(t) = squares - 2 t product + t^2 slope_squares, of e - t m.
@@ -30,7 +31,7 @@ struct Parabola {
   double operator()(double t) const { return squares - 2.0 * t * product + t * t * slope_squares; }
 };
 
-/// The part of the evidence that sizes from `low` to `high` have, theta = origin + scale t.
+/// A cell of sizes theta = origin + scale t, with t from `low` to `high`.
 struct SizeCell {
   double origin, scale;
   double low, high;  ///< of t
@@ -75,7 +76,7 @@ void add(MismatchEvidence& evidence, const CellEvidence& cell) {
   }
 }
 
-/// The same, shifted by a factor of the probability.
+/// The same evidence, with its probability multiplied by a factor.
 MismatchEvidence weighed(MismatchEvidence evidence, double log_weight) {
   evidence.log_evidence += log_weight;
   for (TruncatedNormal& part : evidence.sizes)
@@ -120,7 +121,8 @@ class RecordNoises {
   }
 
   /// log of the mean likelihood of the first of the series over the noises that the benchmark leaves
-  /// possible, less that of the fitted one. `under` is told each set of noises and the products under them.
+  /// possible, less that of the fitted one. Calls `under` with each set of noises and the products under
+  /// them.
   template <class Under>
   double gain_of_other_noises(const Eigen::Ref<const Eigen::MatrixXd>& series,
                               const Eigen::Ref<const Eigen::MatrixXd>& directions, Under under) const {
@@ -129,7 +131,7 @@ class RecordNoises {
     double mean = -kInfinity;
     for (const PossibleNoises& possible : model_.noises().possible) {
       const NoiseModels models{possible.a, possible.b, possible.phi, rest_};
-      // Of many noises most are hopeless, which the first of the series alone shows.
+      // Most of the noises are hopeless, and the first of the series alone shows which.
       const WeighedModels noises =
           WeighedModels{models, possible.log_weight,
                         log_likelihoods(whitened_products(models, series.topRows(1)))}
@@ -155,7 +157,7 @@ class RecordNoises {
   bool rest_;
 };
 
-/// The work on one record.
+/// Computes the evidence that one record gives.
 class RecordLikelihood : private RecordNoises {
  public:
   RecordLikelihood(const ModelErrors& model, const CvPrior& prior, const ScaleLikelihood& likelihood,
@@ -182,8 +184,8 @@ class RecordLikelihood : private RecordNoises {
     const double fitted_alone = evidence.healthy;
     const double of_others = gain_of_other_noises(e_, directions_, [](const auto&, const auto&) {});
     evidence.healthy += of_others;
-    // All of them, however far behind the best: between two sizes of a grid a likelihood may lose more than
-    // any margin when e is large against the noise.
+    // Looks again at all of them, however far behind the best: between two sizes of a grid a likelihood may
+    // lose more than any margin when e is large against the noise.
     std::vector<bool> is_narrow(responses_.size(), false);
     for (std::size_t i = 0; i < responses_.size(); ++i)
       if (evidence.mismatch_alone[i].best_log_likelihood > fitted_alone + kFaint)
@@ -223,7 +225,7 @@ class RecordLikelihood : private RecordNoises {
       series_.middleRows(first_row_[i], grids[i].rows()) = grids[i];
   }
 
-  /// What is unknown of the model when it has this mismatch.
+  /// The directions of what is unknown about the model if it has this mismatch.
   Eigen::MatrixXd directions_with(std::size_t i, double size) const {
     const SizePrior& prior = responses_[i].prior();
     return model_.directions(
@@ -235,8 +237,9 @@ class RecordLikelihood : private RecordNoises {
     return scan_disturbances(prior_.disturbances, base_, rest_, likelihood_, stacked(e, directions));
   }
 
-  /// The whitened series without the directions: of each the part that they cannot explain, in N + q numbers,
-  /// so that their products are those of marginalised(). Adds log |I + Z Z'|.
+  /// The whitened series without the directions: the part of each series that the directions cannot explain,
+  /// in N + q numbers, so that products of these parts are those of marginalised(). Adds log |I + Z Z'| to
+  /// `log_determinant`.
   Eigen::MatrixXd whitened_series(const NoiseModels& models, double& log_determinant) const {
     Eigen::MatrixXd white = whitened(models, series_, log_determinant);
     const Eigen::Index q = directions_.rows(), rows = white.rows() - q;
@@ -252,7 +255,8 @@ class RecordLikelihood : private RecordNoises {
     return left;
   }
 
-  /// All mismatches under one model of the noise, on their grids; the likelihood of none in `without`.
+  /// The evidence of all mismatches on their grids, under one model of the noise. Sets `without` to the
+  /// likelihood without a mismatch.
   std::vector<MismatchEvidence> on_grids(const WeighedModels& model, double* without) const {
     double log_determinant = 0.0;
     const Eigen::MatrixXd white = whitened_series(model.models, log_determinant);
@@ -291,9 +295,9 @@ class RecordLikelihood : private RecordNoises {
     return all;
   }
 
-  /// The evidence of one mismatch around its best size, with the exact m and its slope there: under the base
-  /// noise, or under the disturbances that are in what m leaves. Replaces `evidence` when the posterior is
-  /// narrow enough for a slope, and says so.
+  /// Computes the evidence of one mismatch around its best size, with the exact m and its slope there, under
+  /// the base noise or under the disturbances in what m leaves. If the posterior is narrow enough for a
+  /// slope, replaces `evidence` and returns true.
   bool look_again(std::size_t i, bool disturbed, MismatchEvidence& evidence) const {
     const MismatchResponses& response = responses_[i];
     const auto [low, high] = support(response.prior().size);
@@ -330,7 +334,7 @@ class RecordLikelihood : private RecordNoises {
     return true;
   }
 
-  /// What a mismatch of this size leaves, and its slope there.
+  /// What a mismatch of this size leaves of the errors, and its slope there.
   Eigen::MatrixXd error_and_slope(std::size_t i, double size) const {
     Eigen::MatrixXd pair(2, e_.size());
     pair.row(0) = e_ - response(i, size);
@@ -338,7 +342,7 @@ class RecordLikelihood : private RecordNoises {
     return pair;
   }
 
-  /// Sizes around one under each of the models, from the products of error_and_slope().
+  /// Adds the sizes around `size` under each of the models, from the products of error_and_slope().
   void add_sizes(std::size_t i, double size, const WeighedModels& models, const WhitenedProducts& sums,
                  MismatchEvidence& evidence) const {
     const Distribution& prior = responses_[i].prior().size;
@@ -352,8 +356,8 @@ class RecordLikelihood : private RecordNoises {
     }
   }
 
-  /// The mismatches that are judged under all noises that are possible, the others with what these bring
-  /// `without` a fault. The sizes of one that is narrow are those under all of these noises.
+  /// Judges the mismatches that JudgedMismatches selects under all possible noises. The others gain what
+  /// these noises bring `without` a fault. A narrow mismatch gets its sizes under all of these noises.
   void count_other_noises(double without, const std::vector<bool>& is_narrow,
                           std::vector<MismatchEvidence>& mismatches) const {
     std::vector<std::size_t> order(mismatches.size());
@@ -374,7 +378,7 @@ class RecordLikelihood : private RecordNoises {
     }
   }
 
-  /// Judges a mismatch under all noises that are possible; returns what they bring.
+  /// Judges a mismatch under all possible noises; returns what its log L gains from them.
   double under_other_noises(bool is_narrow, std::size_t i, MismatchEvidence& mismatch) const {
     const double size = mismatch.best_size;
     MismatchEvidence under_all = nothing_yet();
@@ -390,9 +394,9 @@ class RecordLikelihood : private RecordNoises {
     return gain;
   }
 
-  /// Mismatches beside a disturbance. Looked for where a disturbance alone is best, and where the best
-  /// mismatch alone leaves one; the best of them are looked at again, for the others the disturbance is as
-  /// without them.
+  /// The evidence of mismatches beside a disturbance. They are searched for beside the disturbance that is
+  /// best alone, and beside the one that the best mismatch alone leaves. The best of them are looked at
+  /// again; for the others the disturbance is as without them.
   std::vector<MismatchEvidence> with_disturbance(const CvEvidence& so_far,
                                                  const WeighedModels& disturbances) const {
     std::vector<MismatchEvidence> all;

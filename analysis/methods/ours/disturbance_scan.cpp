@@ -10,13 +10,13 @@
 namespace mpm {
 namespace {
 
-constexpr Eigen::Index kPoints = 9;  // sizes of a time constant at once
+constexpr Eigen::Index kPoints = 9;  // sizes that are tried at once for a time constant
 constexpr int kMostStages = 6;
 constexpr double kFineEnough = 1.0;  // drop of log L from the best size to its neighbours
-constexpr double kOutside = 14.0;    // sizes with so much less are outside of the finer grid
+constexpr double kOutside = 14.0;    // sizes whose log L is lower by this are outside of the finer grid
 constexpr double kNegligible = 15.0;
-/// Time constants that are left alone: log L so far below the best, which grows by some until the sizes are
-/// fine.
+/// A time constant is dropped if its log L is so far below the best. The margin is larger while the sizes are
+/// coarse, since log L still grows then.
 constexpr double kHopeless = 14.0, kStillCoarse = 25.0;
 
 /// The sizes of one time constant.
@@ -28,7 +28,7 @@ struct SizeGrid {
   double spacing() const { return (high - low) / static_cast<double>(kPoints - 1); }
   double log_size(Eigen::Index i) const { return low + static_cast<double>(i) * spacing(); }
 
-  /// A finer grid where the likelihood is, unless this one is fine.
+  /// Makes the grid finer where the likelihood is, unless it is fine enough.
   void refine() {
     Eigen::Index best = 0;
     const double largest = log_likelihood.maxCoeff(&best);
@@ -94,7 +94,7 @@ class DisturbanceScan {
     return models;
   }
 
-  /// Whether there was anything left to do.
+  /// Computes the likelihoods of all open grids; returns whether there were any.
   bool evaluate() {
     std::vector<std::size_t> open;
     for (std::size_t t = 0; t < grids_.size(); ++t)
@@ -133,7 +133,7 @@ class DisturbanceScan {
         const SizeGrid& grid = grids_[t];
         const double size = std::exp(grid.log_size(i));
         const double end = i == 0 || i == kPoints - 1 ? 0.5 : 1.0;  // of the trapezoidal rule
-        // The ends of the support may lie beyond it by rounding.
+        // By rounding, the ends of the grid may lie beyond the support.
         const auto [low, high] = support(prior_[t].size);
         nodes.log_prior(node) = std::log(prior_[t].weight * end * grid.spacing() * size *
                                          density(prior_[t].size, std::clamp(size, low, high)));

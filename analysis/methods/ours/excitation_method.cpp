@@ -23,7 +23,7 @@ enum class DependenceMeasure : std::int8_t { f, mutual_information };
 struct ExcitationOptions {
   ErrorRegressionOptions regression;
   DependenceMeasure measure = DependenceMeasure::f;
-  int bins = 4;  ///< a signal, of the mutual information
+  int bins = 4;  ///< bins of each signal, for the mutual information
 
   bool operator==(const ExcitationOptions&) const = default;
 };
@@ -40,12 +40,13 @@ OptionKeys keys(ExcitationOptions& options) {
   return all;
 }
 
-/// Signals that act on the loop and upon which nothing in the loop acts: no unmeasured disturbance can know
-/// them, so that a simulation error that follows them shows a wrong model, in closed loop, too, and whatever
-/// disturbs it. Relatives are the cross-correlations of Webber and Gupta (2008), which were not to be had,
-/// and the mutual information of Gao, Chen, Xie, Su and Wang (2012, IFAC Proceedings Volumes, ADCHEM), of
-/// which the abstract was: mutual information between dithering signals and model residuals shows a mismatch
-/// "regardless of change in disturbance dynamics". Estimator and limits are not in it: the tests are our own.
+/// Tests the simulation errors against signals that act on the loop and on which nothing in the loop acts. No
+/// unmeasured disturbance can know them, so a simulation error that follows them shows a wrong model, in
+/// closed loop, too, and whatever disturbs the loop. Related methods are the cross-correlations of Webber and
+/// Gupta (2008), a paper that we could not get, and the mutual information of Gao, Chen, Xie, Su and Wang
+/// (2012, IFAC Proceedings Volumes, ADCHEM), of which we have the abstract: mutual information between
+/// dithering signals and model residuals shows a mismatch "regardless of change in disturbance dynamics". The
+/// abstract has neither estimator nor limits, so the tests are our own.
 ///
 ///   measure f:                   prewhitened_test() of e_i on the filtered signals together
 ///   measure mutual_information:  binned_information() of the whitened e_i and each filtered signal, as it
@@ -122,7 +123,7 @@ class Excitation final : public AssessmentMethod {
 
   OutsideSignals signals_;
   const ExcitationOptions& options_;
-  ErrorRegressions usual_;  ///< of a benchmark that has corrected the model; or empty
+  ErrorRegressions usual_;  ///< regressions of a benchmark that has corrected the model, or empty
 };
 
 }  // namespace

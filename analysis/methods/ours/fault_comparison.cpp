@@ -47,7 +47,7 @@ Columns moves_of(const Study& study, const AssessedLoop& loop, Eigen::Index cv) 
   return columns;
 }
 
-/// Where a valve stands whose signal is u.
+/// The positions of a valve whose signal is u.
 Eigen::RowVectorXd positions(ValveStem&& stem, const Eigen::RowVectorXd& u) {
   Eigen::RowVectorXd x(u.size());
   for (Eigen::Index k = 0; k < u.size(); ++k)
@@ -55,7 +55,7 @@ Eigen::RowVectorXd positions(ValveStem&& stem, const Eigen::RowVectorXd& u) {
   return x;
 }
 
-/// N x channels of a CV, late.
+/// The responses of the channels of a CV, `late` samples late, N x channels.
 Columns responses(const Study& study, const AssessedLoop& loop, Eigen::Index cv, double late) {
   std::vector<Eigen::RowVectorXd> all;
   for (Eigen::Index place = 0; place < study.mv_count() + study.md_count(); ++place)
@@ -67,7 +67,7 @@ Columns responses(const Study& study, const AssessedLoop& loop, Eigen::Index cv,
   return columns;
 }
 
-/// The most likely one of a CV, less log m of its m channels.
+/// The most likely mismatch of a CV. Its gain is less by log m, for the m channels.
 LikelyMismatch mismatch_of(const Study& study, const AssessedLoop& loop, const CvErrors& errors,
                            Eigen::Index cv) {
   double channels = 0.0;
@@ -116,7 +116,7 @@ double FaultComparison::dependence_beside(RecordSource source) const {
   return most;
 }
 
-/// That of each CV for which there is one, and of one CV at least.
+/// Adds the mismatch of each CV that gains from one; if none gains, takes that of the CV that loses least.
 void FaultComparison::ask_mismatch() {
   double sum = 0.0, most = -kInfinity;
   for (Eigen::Index cv = 0; cv < loop_.y.rows(); ++cv) {
@@ -199,7 +199,7 @@ void FaultComparison::ask_sensor() {
   }
 }
 
-/// L of a valve of this MV whose position is x.
+/// L if x is the position of the valve of this MV.
 double FaultComparison::of_valve(Eigen::Index mv, const Eigen::RowVectorXd& x) const {
   const Eigen::RowVectorXd off = x - loop_.u.row(mv);
   double sum = 0.0, samples = 0.0;

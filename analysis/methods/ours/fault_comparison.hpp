@@ -16,8 +16,8 @@ namespace mpm {
 
 /// How well each sort of fault explains the simulation errors of a loop beside noise of any shape, on one
 /// scale: the sum of the L of all CVs (CvErrors), less k/2 log N for the k parameters of the hypothesis h
-/// (Schwarz 1978) and less log m for the m channels, CVs, or MVs and valve models that it may be of. The slow
-/// part of n is a disturbance, which may be there in each of them.
+/// (Schwarz 1978) and less log m for the m channels, CVs, or MVs and valve models among which it chooses. The
+/// slow part of n is a disturbance, which may be there under each hypothesis.
 ///
 /// | hypothesis  | h                                                                                        |
 /// |-------------|------------------------------------------------------------------------------------------|
@@ -34,8 +34,8 @@ struct FaultLikelihoods {
   Eigen::Index sensor_cv = -1, valve_mv = -1;
   bool sensor_jumps = false;                ///< h of `sensor` is a step
   bool sensor_stuck = false;                ///< `sensor_cv` shows one value instead
-  std::optional<NamedMismatch> named = {};  ///< the most likely mismatch, of an MV, without a size
-  Eigen::Index md = -1;                     ///< whose channel the most likely mismatch is of, and no MV's
+  std::optional<NamedMismatch> named = {};  ///< the most likely mismatch, if it is of an MV; without a size
+  Eigen::Index md = -1;  ///< MD whose channel has the most likely mismatch; -1: an MV's has it
 };
 
 /// The hypotheses about one loop.
@@ -46,7 +46,7 @@ class FaultComparison {
 
   const FaultLikelihoods& likelihoods() const { return found_; }
 
-  /// The largest input_dependence() of a CV where what is most likely of this source is taken off; 0 of a
+  /// The largest input_dependence() of a CV after the most likely fault of this source is subtracted; 0 for a
   /// mismatch, whose size is not known here.
   double dependence_beside(RecordSource source) const;
 
@@ -64,19 +64,20 @@ class FaultComparison {
   FaultLikelihoods found_;
   double none_ = 0.0;
   Eigen::RowVectorXd off_;  ///< x - u of the most likely valve
-  Eigen::VectorXd drift_;   ///< of the most likely sensor, of any size
+  Eigen::VectorXd drift_;   ///< drift of the most likely sensor, of any size
 };
 
-/// Do the inputs help to predict the errors of a CV beside the last twelve errors of every CV (Granger 1969)?
-/// The controller answers to these, so that its moves say nothing more of a disturbance, whatever its shape.
-/// The Lagrange multiplier statistic of the last six moves of each input behind its dead time, with the
-/// covariance of White (1980), since the size of a disturbance changes, over the value that chance exceeds in
-/// 1 of 100 records. A short record has fewer errors of each CV, and an error that is missing counts as 0. An
-/// absolute test: what no hypothesis explains raises it above 1.
+/// Tests whether the inputs help to predict the errors of a CV beside the last twelve errors of every CV
+/// (Granger 1969). The controller answers to these errors, so its moves tell nothing more about a
+/// disturbance, whatever its shape. Returns the Lagrange multiplier statistic of the last six moves of each
+/// input behind its dead time, over the value that chance exceeds in 1 of 100 records. The statistic has the
+/// covariance of White (1980), since the size of a disturbance changes. In a short record there are fewer
+/// errors of each CV, and a missing error counts as 0. The test is absolute: what no hypothesis explains
+/// raises the result above 1.
 double input_dependence(const Study& study, const AssessedLoop& loop, const CvErrors& errors,
                         Eigen::Index cv);
 
-/// CVs whose rows are of another time than those of the inputs.
+/// CVs whose rows are shifted in time against those of the inputs.
 struct LateCvs {
   double samples = 0.0;                ///< below 0: early; 0: none is late
   std::vector<Eigen::Index> cvs = {};  ///< empty: all
@@ -87,11 +88,11 @@ struct LateCvs {
   }
 };
 
-/// The CVs that are late against the inputs (below 0: early), all by the same half or whole samples; none, as
-/// far as anyone can tell. Those are late that s explains better than no shift, and all are unless s explains
-/// some worse, by 2 in L. Together s explains them better than none does, by 6 in L, where the gain of each
-/// channel is free in both, and not worse than a mismatch in one channel of each CV; of one CV alone better
-/// by 6 than that.
+/// Finds the CVs that are late against the inputs (below 0: early), all by the same shift s of half or whole
+/// samples; none if nobody can tell. A CV is late if s explains it better than no shift by 2 in L. All CVs
+/// are late if s explains none of them worse by 2 in L. Together s must explain the late CVs better than no
+/// shift does by 6 in L, with the gain of each channel free in both, and not worse than a mismatch in one
+/// channel of each CV does; a single late CV among several must be explained better than that by 6.
 LateCvs common_lateness(const Study& study, const AssessedLoop& loop, const std::vector<CvErrors>& errors);
 
 }  // namespace mpm

@@ -61,7 +61,8 @@ double log_expm1(double x) {
   return x > 30.0 ? x + std::log1p(-std::exp(-x)) : std::log(std::expm1(x));
 }
 
-/// Of the faults of a CV, from the logarithm of the weight of all and of none; `log_odds` as said.
+/// The probabilities of the faults of a CV. `log_total` is the logarithm of the weight of all faults and of
+/// none together; `log_odds` is taken over.
 FaultProbabilities::OfCv probabilities_of_cv(const CvWeights& cv, double log_total, double log_odds) {
   const double sensor = std::exp(cv.sensor - log_total);
   return {std::exp(cv.mpm - log_total),
@@ -114,8 +115,8 @@ FaultProbabilities of_several_faults(const std::vector<CvWeights>& weights) {
   return probabilities;
 }
 
-/// Is the noise of the records of this study known to be normal, of a size that the study says, and kept as
-/// it was measured?
+/// Returns whether the noise of the records of this study is known to be normal, of the size that the study
+/// states, and kept as it was measured.
 bool noise_is_known(const Study& study) {
   const RecordOptions& record = study.record;
   const bool kept = record.quantisation == 0.0 && record.compression == 0.0 &&
@@ -125,15 +126,15 @@ bool noise_is_known(const Study& study) {
          (study.simulation.noise_standard_deviation.array() > 0.0).all();
 }
 
-/// Where the inputs of the model rest before a record that begins at the operating point.
+/// The values at which the inputs of the model rest before a record that begins at the operating point.
 Eigen::VectorXd initial_inputs(const AssessmentContext& context) {
   Eigen::VectorXd initial = Eigen::VectorXd::Zero(context.study.plant.G.cols());
   initial.head(context.basis.point.u.size()) = context.basis.point.u;
   return initial;
 }
 
-/// The model of each CV with its errors, as the benchmark shows them; the ceiling knows what they are drawn
-/// from.
+/// The model of each CV with its errors, as the benchmark shows them; the ceiling knows the distributions
+/// that they are drawn from.
 std::vector<ModelErrors> learnt_models(const AssessmentContext& context, FaultPriors priors) {
   const Study& study = context.study;
   const AssessedLoop& benchmark = *context.benchmark;
@@ -159,7 +160,7 @@ std::vector<ModelErrors> learnt_models(const AssessmentContext& context, FaultPr
   return models;
 }
 
-/// Of the noise of each CV, `whole`: with its slow part.
+/// The standard deviation of the noise of each CV; `whole`: with its slow part.
 Eigen::VectorXd deviations(const std::vector<ModelErrors>& models, bool whole) {
   Eigen::VectorXd all(static_cast<Eigen::Index>(models.size()));
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -184,9 +185,9 @@ const std::vector<MismatchEvidence>& mismatches_of_source(const CvEvidence& evid
   return source == FaultSource::mpm ? evidence.mismatch_alone : evidence.mismatch_with_disturbance;
 }
 
-/// The same priors with every kind of fault as frequent as the others, and loops with one as those without.
-/// Scores are taken from them: they are held against those of loops of a calibration, whose study is the same
-/// but for its kinds.
+/// The same priors with all kinds of faults equally frequent, and loops with a fault as frequent as those
+/// without. Scores come from these priors, since they are compared with the scores of calibration loops,
+/// whose study is the same except for its kinds.
 FaultPriorSet of_equal_kinds(const Study& study, FaultPriorSet priors) {
   const auto channels_of = [&study](Eigen::Index cv) {
     double count = 0.0;
@@ -206,12 +207,12 @@ FaultPriorSet of_equal_kinds(const Study& study, FaultPriorSet priors) {
   return priors;
 }
 
-/// Does the study draw faults of the kinds that the likelihood knows?
+/// Returns whether the study draws faults of the kinds that the likelihood knows.
 bool draws_known_faults(const Study& study) {
   return study.experiments.mpm + study.experiments.ud + study.experiments.mpm_ud > 0;
 }
 
-/// What is known of the faults before a record is seen: the same for all loops of a benchmark
+/// What is known about the faults before a record is seen. It is the same for all loops of a benchmark
 /// (AssessmentContext::of_benchmark).
 class FaultKnowledge {
  public:
@@ -250,17 +251,19 @@ class FaultKnowledge {
   Eigen::RowVectorXd errors(const AssessedLoop& loop, Eigen::Index cv) const {
     return learnt_ ? learnt_->errors(loop, cv) : errors_in_window(loop, cv);
   }
-  /// Noise of an MD in the benchmark, or what of it would not be seen.
+  /// The noise of an MD in the benchmark; at least what would not be seen (kUnseen).
   double md_noise(Eigen::Index md) const { return md_noises_(md); }
 
  private:
-  static constexpr double kHalves = 2.0;  ///< of the benchmark in a record: log L grows with the samples
+  /// Halves of the benchmark in a record; log L grows with the number of samples.
+  static constexpr double kHalves = 2.0;
   /// Degrees of freedom of the variance of a noise that is taken from the benchmark.
   static constexpr double kUnknownNoise = 4.0;
 
-  /// A fault must be more probable than the false ones that one half of the benchmark shows under what the
-  /// other half teaches, in a record of the length of both: there the model of the errors is wrong (a
-  /// nonlinear plant). Where it is right, the halves show none, and the priors stay.
+  /// Lowers the priors of faults by the false faults that one half of the benchmark shows under the model
+  /// learnt from the other half: in a record of the length of both, a fault must be more probable than they
+  /// are. There are false faults if the model of the errors is wrong (a nonlinear plant). If it is right, the
+  /// halves show none, and the priors stay.
   void discount_false_faults(const AssessmentContext& context, const LearntModel& learnt) {
     const Study& study = context.study;
     const AssessedLoop& benchmark = *context.benchmark;
@@ -299,7 +302,7 @@ class FaultKnowledge {
     }
   }
 
-  static constexpr double kUnseen = 1e-3;  ///< noise of an MD, over what it moves
+  static constexpr double kUnseen = 1e-3;  ///< least noise of an MD, over the range of its moves
 
   std::shared_ptr<const LearntModel> learnt_;
   std::vector<ModelErrors> models_;
@@ -328,8 +331,8 @@ class FaultPosterior final : public AssessmentMethod {
     std::vector<Eigen::RowVectorXd> errors;
     for (std::size_t i = 0; i < known_->models().size(); ++i) {
       const auto cv = static_cast<Eigen::Index>(i);
-      // A window is the record up to its end in which nothing is observed before it: what the inputs did
-      // before is known, and a disturbance may have been there.
+      // A window is taken as the record up to its end with no CV observed before the window: what the inputs
+      // did there is known, and a disturbance may have been there.
       Eigen::RowVectorXd e = known_->errors(loop, cv).head(loop.first + loop.samples());
       if (e.array().isNaN().all())
         return Assessment::failed("a CV has no sample");
@@ -342,7 +345,7 @@ class FaultPosterior final : public AssessmentMethod {
       return answer(probabilities, fault_probabilities(known_->for_scores(), evidence), evidence);
     const std::vector<Eigen::MatrixXd> series = healthy_series(loop, errors, inputs);
     const std::vector<WhitenedErrors> whitened = whitened_errors(series);
-    // Where nobody knows the noise, FaultComparison asks for sensors and valves.
+    // If nobody knows the noise, FaultComparison tests sensors and valves instead.
     const bool asks_instruments = !loop.has_unknown_noise();
     const InputWeights of_inputs = input_weights(evidence, series, whitened, inputs, asks_instruments);
     for (std::size_t i = 0; i < known_->models().size(); ++i)
@@ -373,12 +376,12 @@ class FaultPosterior final : public AssessmentMethod {
     return 1.0 - probabilities.healthy > study_.assessment.of<LikelihoodOptions>().flag_probability;
   }
 
-  /// A CV in which something is wrong, and that not a disturbance beyond doubt.
+  /// Returns whether something is wrong in the CV that is not beyond doubt a disturbance.
   static bool is_suspect(const FaultProbabilities::OfCv& cv) {
     return cv.fault() > kSuspect && cv.ud < 1.0 - kSuspect;
   }
 
-  /// Up to the end of the window; 0 x N of a record of the bench.
+  /// AssessedLoop::untold up to the end of the window; 0 x N for a record of the bench.
   static Eigen::MatrixXd untold_of(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index samples) {
     const std::vector<Eigen::MatrixXd>& untold = loop.from_start().untold;
     return untold.empty() ? Eigen::MatrixXd(0, samples)
@@ -404,7 +407,8 @@ class FaultPosterior final : public AssessmentMethod {
     return all;
   }
 
-  /// What a fault around the model leaves of the CV in the place `cv` is as probable as in a healthy loop.
+  /// The evidence of what a fault around the model leaves of the CV in the place `cv`: it is as probable as
+  /// in a healthy loop.
   double evidence_with(const ExplainedErrors& fault, std::size_t cv, Eigen::MatrixXd series) const {
     series.row(0) -= fault.of_cvs[cv];
     return known_->of(cv).healthy_evidence(series);
