@@ -459,8 +459,9 @@ class FaultPosterior final : public AssessmentMethod {
     return found;
   }
 
-  /// log of the weight of a wrong measurement of some MD against nothing. Of its noise the record of the MD
-  /// speaks, whatever the errors of the CVs look like: it is `kOfNoisyMd` more probable than `log_odds`.
+  /// log of the weight of a wrong measurement of some MD against nothing. The record of the MD itself shows
+  /// that its measurement is noisy, whatever the errors of the CVs look like: this weighs kOfNoisyMd more
+  /// than `log_odds`.
   double md_weight(double log_odds, const std::vector<CvEvidence>& evidence,
                    const std::vector<Eigen::MatrixXd>& series, const std::vector<WhitenedErrors>& whitened,
                    const Eigen::MatrixXd& inputs) const {
@@ -476,9 +477,9 @@ class FaultPosterior final : public AssessmentMethod {
     return sum;
   }
 
-  /// The sensors of the CVs in which something is wrong. A disturbance that steps or ramps looks like a bias
-  /// or a drift (best_sensor_error()). Where several CVs show one it is a disturbance that reaches them,
-  /// since two sensors hardly go wrong in one record.
+  /// Judges the sensors of the CVs in which something is wrong. A disturbance that steps or ramps looks like
+  /// a bias or a drift (best_sensor_error()). If several CVs show one, it is taken for a disturbance that
+  /// reaches them, since two sensors hardly go wrong in one record.
   void ask_sensors(const AssessedLoop& loop, const FaultProbabilities& probabilities,
                    const std::vector<Eigen::MatrixXd>& series, const std::vector<WhitenedErrors>& whitened,
                    std::vector<CvEvidence>& evidence) const {
@@ -513,19 +514,21 @@ class FaultPosterior final : public AssessmentMethod {
     return known_->of(cv).healthy_evidence(series) + kOfStuckSample * static_cast<double>(stretch.length());
   }
 
-  static constexpr double kGrowingShare = 0.5;  ///< of mismatches that grow, against those that do not
-  /// Of mismatches in which more than one parameter is wrong. With 0.1, and without the gains of all
-  /// channels, `likelihood` named one source less of the 197 faults of `mixed` and `several` under the seeds
-  /// 8 and 11.
+  /// Weight of mismatches that grow, over that of those that do not.
+  static constexpr double kGrowingShare = 0.5;
+  /// The same for mismatches in which more than one parameter is wrong. With 0.1, and without the gains of
+  /// all channels, `likelihood` named one source fewer of the 197 faults of `mixed` and `several` under the
+  /// seeds 8 and 11.
   static constexpr double kAnyShapeShare = 0.3;
   static constexpr double kSuspect = 1e-3;  ///< probability from which a CV is looked at more closely
-  /// log of the likelihood of an error of a sensor over all else that may be wrong with its CV; not tuned.
+  /// A sensor tells of an error if the log of its likelihood exceeds that of all else that may be wrong with
+  /// its CV by this; not tuned.
   static constexpr double kTelling = 5.0;
-  /// log of the density of a sample of a stuck sensor, in deviations of the noise: it is known to a
-  /// twentieth.
+  /// log of the density of a sample of a stuck sensor, in deviations of the noise: it is known to a twentieth
+  /// of one.
   static constexpr double kOfStuckSample = 3.0;
-  /// log of the weight of a noisy measurement of an MD over all faults of CVs, once has_noisy_md() says so:
-  /// large enough to decide, and no likelihood.
+  /// log of the weight of a noisy measurement of an MD over all faults of CVs, if has_noisy_md() says so:
+  /// large enough to decide, but not a likelihood.
   static constexpr double kOfNoisyMd = 10.0;
 
   Assessment answer(const FaultProbabilities& probabilities, const FaultProbabilities& scores,
@@ -551,7 +554,7 @@ class FaultPosterior final : public AssessmentMethod {
     return assessment;
   }
 
-  /// The most probable parameter of a CV with a mismatch: its channel, and of the worst CV its size.
+  /// Names the most probable parameter of a CV with a mismatch: its channel and, for the worst CV, its size.
   void name_mismatch(std::size_t cv, FaultSource source, const CvEvidence& evidence, bool worst,
                      Assessment& assessment) const {
     if (!assessment.flagged || (source != FaultSource::mpm && source != FaultSource::mpm_ud))
@@ -566,14 +569,15 @@ class FaultPosterior final : public AssessmentMethod {
       return;
     const auto ends = support(named.size);
     const Interval sizes = up_to_ends(shortest_interval(likeliest->sizes, study_.aggregate.confidence), ends);
-    // The likeliest size says whether larger ones would be likelier: the median lies within the range.
+    // The likeliest size, not the median, tells whether larger sizes would be likelier: the median lies
+    // within the range.
     assessment.named_mismatch = {
         named.channel, named.parameter, mixture_quantile(likeliest->sizes, 0.5),
         sizes.lower,   sizes.upper,     bound_within(likeliest->best_size, ends.first, ends.second)};
   }
 
-  /// An end that differs from one of the possible sizes by rounding is this one. A size that studies scale to
-  /// an effect often lies there.
+  /// Moves an end of the interval to that of the possible sizes if both differ by rounding only. A size that
+  /// a study scales to an effect often lies there.
   static Interval up_to_ends(Interval sizes, std::pair<double, double> ends) {
     const double rounding = 1e-9 * (ends.second - ends.first);
     if (sizes.lower < ends.first + rounding)
@@ -583,7 +587,8 @@ class FaultPosterior final : public AssessmentMethod {
     return sizes;
   }
 
-  /// Where errors of the model are learnt, by what was true in loops in which the same was seen.
+  /// The probabilities as they are stated. If errors of the model are learnt, they follow from what was true
+  /// in loops in which the same was seen.
   SourceProbabilities stated_of(const FaultProbabilities& probabilities) const {
     const SourceProbabilities seen{probabilities.healthy, probabilities.mpm, probabilities.ud,
                                    probabilities.both, probabilities.other};
@@ -625,8 +630,8 @@ class FaultPosterior final : public AssessmentMethod {
   const Study& study_;
   Eigen::VectorXd initial_;
   std::shared_ptr<const FaultKnowledge> known_;
-  bool is_learnt_ = false;  ///< errors of the model are
-  bool asks_more_ = false;  ///< beside the basic hypotheses
+  bool is_learnt_ = false;  ///< errors of the model are learnt
+  bool asks_more_ = false;  ///< hypotheses are asked besides the basic ones
 };
 
 }  // namespace
@@ -641,7 +646,7 @@ namespace {
 using LoopShares = std::vector<double FaultProbabilities::*>;
 using CvShares = std::vector<double FaultProbabilities::OfCv::*>;
 
-/// The weight of a further fault of the loop, which counts in `of_loop` and `of_cv`.
+/// Adds a further fault of the loop with this weight, which counts in `of_loop` and `of_cv`.
 FaultProbabilities with_fault_of_input(FaultProbabilities probabilities, double log_weight,
                                        const LoopShares& of_loop, const CvShares& of_cv) {
   const double share = std::exp(log_weight - log_sum(log_sum(0.0, probabilities.log_odds), log_weight));

@@ -20,12 +20,12 @@ constexpr double kDeviations = 4.0;  // at which a normal distribution is cut of
 // long or longer by a residence time, a disturbance of 0.1 to 1000 standard deviations of the noise with a
 // time constant of a sample to half the record.
 constexpr double kLargestFactor = 10.0;
-constexpr double kBeyond = 1.1;  // of the largest factor, where the model has errors of its own
+constexpr double kBeyond = 1.1;  // of the largest factor, if the model has errors of its own
 constexpr double kSmallestDisturbance = 0.1, kLargestDisturbance = 1000.0;
-/// Of mismatch, disturbance and both, when there is a fault.
+/// Shares of mismatch, disturbance and both, if there is a fault.
 constexpr std::array kWideShares{0.4, 0.4, 0.2};
-constexpr double kInputShare = 0.2;   // of a disturbance on an MV, against the others
-constexpr double kSensorShare = 0.2;  // of a sensor of a CV, and of one of an MD
+constexpr double kInputShare = 0.2;   // weight of a disturbance on an MV, over that of the others
+constexpr double kSensorShare = 0.2;  // the same for a sensor of a CV, and for one of an MD
 /// Standard deviation of the logarithm of the variance of the noise about that of the benchmark: 0.7, or a
 /// factor of 1.4 in the standard deviation.
 constexpr double kWideFreedom = 4.0;
@@ -37,8 +37,8 @@ double normal_density(double z) {
   return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
 }
 
-/// Where a study scales its sizes to the effect they have, what it draws says in which direction they are and
-/// nothing of how large.
+/// If a study scales its sizes to their effect, the distribution that it draws from tells their direction,
+/// but nothing about how large they are.
 Distribution scaled_factor(const Distribution& drawn) {
   const auto [low, high] = support(drawn);
   return Distribution::log_uniform(low < 1.0 ? 1.0 / kLargestFactor : 1.0, high > 1.0 ? kLargestFactor : 1.0);
@@ -49,7 +49,7 @@ double longest_delay(const Study& study, const TransferFunction& channel) {
       {channel.dead_time(), std::abs(channel.residence_time()), 2.0 * study.controller.sample_time});
 }
 
-/// Shifts between two numbers, when there is room between them.
+/// Shifts between two numbers; the higher one if there is no room between them.
 Distribution shift_between(double low, double high) {
   return low < high ? Distribution::uniform(low, high) : Distribution::constant(high);
 }
@@ -132,7 +132,8 @@ std::vector<SizePrior> mismatches_of(const Study& study, FaultPriors priors, Eig
   return mismatches;
 }
 
-/// The time constants, each in the middle of a cell of the same width of its logarithm, and their weights.
+/// Time constants, each in the middle of a cell, and their weights. The cells have the same width in the
+/// logarithm.
 std::vector<std::pair<double, double>> time_constants(const Distribution& distribution) {
   const auto [low, high] = support(distribution);
   const int count = std::max(1, static_cast<int>(std::ceil(std::log(high / low) / kTimeConstantStep)));
@@ -165,7 +166,7 @@ std::vector<DisturbancePrior> disturbances_of(const Study& study, FaultPriors pr
   std::vector<DisturbancePrior> disturbances;
   for (const auto& [tau, weight] : time_constants(taus)) {
     const double a = std::exp(-Ts / tau);
-    // y_d of white v held over a sample, and of a given standard deviation.
+    // For y_d of white v that is held over a sample, or for y_d of a given standard deviation.
     const double scale = sized ? ranges.v_standard_deviation * (1.0 - a) : noise * std::sqrt(1.0 - a * a);
     disturbances.push_back({a, weight, scale, size});
   }
@@ -180,8 +181,8 @@ bool draws_one_fault(const Study& study) {
          std::all_of(places.begin() + 1, places.end(), [](double weight) { return weight == 0.0; });
 }
 
-/// nu for which the logarithm of a scaled inverse chi-square variable has the variance of that of the
-/// factor's square, 2 / nu for more than a few.
+/// The nu for which the logarithm of a scaled inverse chi-square variable has the same variance as the
+/// logarithm of the factor's square. This variance is 2 / nu if nu is more than a few.
 double freedom_of(const Distribution& factor) {
   const auto [low, high] = support(factor);
   const double width = std::log(high / std::max(low, 1e-3 * high));
@@ -189,8 +190,8 @@ double freedom_of(const Distribution& factor) {
   return variance > 0.0 ? 2.0 / variance : kInfinity;
 }
 
-/// A fault of one of `count` inputs, where one of some input is as probable as all faults of CVs are, times
-/// its share.
+/// The weight of a fault of one of `count` inputs. A fault of some input is as probable as all faults of CVs
+/// times `share`.
 double input_weight(double share, double fault_probability, Eigen::Index count) {
   return count == 0 ? 0.0
                     : share * fault_probability / (1.0 - fault_probability) / static_cast<double>(count);
@@ -271,7 +272,7 @@ FaultPriorSet fault_priors(const Study& study, FaultPriors priors, double fault_
     double own = 0.0;
     for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
       own += study.plant.G(cv, mv).is_zero() ? 0.0 : 1.0;
-    // A channel is drawn out of all, and a disturbance has the CV of the mismatch where there is one.
+    // The study draws one channel out of all, and a disturbance has the CV of the mismatch if there is one.
     prior.mpm *= own / channels;
     prior.both *= own / channels;
     prior.ud /= ny;

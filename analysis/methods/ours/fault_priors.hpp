@@ -14,7 +14,7 @@
 
 namespace mpm {
 
-/// What the method `likelihood` takes for possible before it sees a record
+/// What the method `likelihood` takes to be possible before it sees a record
 /// (analysis/methods/ours/fault_priors).
 enum class FaultPriors : std::int8_t {
   wide = 0,   ///< whatever a plant may have: one fault or several, of any size
@@ -49,7 +49,7 @@ struct CvPrior {
   double mpm, ud, both;               ///< weights against 1 for nothing
   std::vector<SizePrior> mismatches;  ///< their weights sum to 1, if there is one
   std::vector<DisturbancePrior> disturbances;
-  double sensor = 0.0;  ///< weight of its sensor, against 1 for nothing; of wide priors
+  double sensor = 0.0;  ///< weight of a fault of its sensor, against 1 for nothing; with wide priors
 };
 
 /// | `priors` | faults                                 | sizes                       | noise           |
@@ -57,14 +57,15 @@ struct CvPrior {
 /// | wide     | each CV by itself, `fault_probability` | what a plant may have       | the benchmark's |
 /// | study    | as the study draws them                | as the study draws them     | the study's     |
 ///
-/// `fault_probability` is that of some CV having one; the wide sizes are wide_priors(), and the noise of the
-/// benchmark is known within a factor of about two.
+/// `fault_probability` is the probability that some CV has a fault; the wide sizes are wide_priors(), and the
+/// noise of the benchmark is known within a factor of about two.
 struct FaultPriorSet {
   std::vector<CvPrior> cvs;  ///< ny
-  /// Weights against 1 for nothing, of wide priors: of a disturbance on each MV, of a valve of each that
-  /// sticks, and of a wrong measurement of each MD.
+  /// Weights against 1 for nothing, with wide priors. `input` is that of a disturbance on each MV, and of a
+  /// sticking valve of each MV; `md` is that of a wrong measurement of each MD.
   double input = 0.0, md = 0.0;
-  bool one_fault = false;  ///< only one CV has a fault; otherwise each CV may, independently of the others
+  /// Only one CV has a fault; otherwise each CV may have one, independently of the others.
+  bool one_fault = false;
   /// nu of the scaled inverse chi-square distribution of the variance of the noise about the known one;
   /// infinity: it is known.
   double noise_freedom;
@@ -72,10 +73,10 @@ struct FaultPriorSet {
   bool starts_from_rest;
 };
 
-/// The priors of `options`. `noise` (ny) are the standard deviations of the measurement noise, in which the
-/// sizes of wide disturbances are measured. `imperfect`: healthy models have errors and healthy loops a
-/// background, so that wide disturbances begin above kLargestBackground, and wide factors reach beyond what a
-/// corrected model may be off.
+/// The set of priors that `priors` names. `noise` (ny) are the standard deviations of the measurement noise,
+/// in which the sizes of wide disturbances are measured. `imperfect`: healthy models have errors and healthy
+/// loops a background, so that wide disturbances begin above kLargestBackground, and wide factors reach
+/// beyond what a corrected model may be off.
 FaultPriorSet fault_priors(const Study& study, FaultPriors priors, double fault_probability,
                            const Eigen::Ref<const Eigen::VectorXd>& noise, bool imperfect = false);
 

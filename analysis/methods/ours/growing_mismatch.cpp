@@ -23,9 +23,9 @@ constexpr std::array kTriedGrowths{0.05, 0.25, 0.5};
 constexpr std::size_t kTriedSizes = 6;
 constexpr double kMostStretch = 1.5;  // of the response at a size of the grid
 constexpr std::size_t kMostRefined = 3;
-constexpr double kFarFromBest = 60.0;  // of half the squares that a parameter explains
+constexpr double kFarFromBest = 60.0;  // behind the best, in half the squares that a parameter explains
 constexpr int kMostRefinements = 10, kMostHalvings = 4;
-constexpr double kEnough = 0.02;  // of log L, by a step
+constexpr double kEnough = 0.02;  // gain of log L by a step; less ends the search
 constexpr double kShortestGrowth = 1.0;
 
 /// Size, onset and end.
@@ -47,7 +47,7 @@ class Explained {
     e_in_Z_ = inner_.matrixL().solve(Z_ * e_.transpose());
   }
 
-  /// Squares of e that t m explains, t <= `most`.
+  /// The squares of e that t m explains, with t between 1 / `most` and `most`.
   double by(const Eigen::RowVectorXd& m, double most) const {
     const Eigen::VectorXd in_Z = inner_.matrixL().solve(Z_ * m.transpose());
     const double squares = m.squaredNorm() - in_Z.squaredNorm();
@@ -106,7 +106,7 @@ class GrowingSearch {
     double explained;
   };
 
-  /// A point of the search: log L there, and its slopes with the information about size, onset and end.
+  /// A point of the search: log L there, its slopes, and the information about size, onset and end.
   struct Look {
     double log_likelihood;
     Eigen::Vector3d slope;
@@ -117,7 +117,7 @@ class GrowingSearch {
   Eigen::RowVectorXd input(std::size_t i) const { return inputs_.row(responses_[i].prior().channel.mv); }
   double initial(std::size_t i) const { return initial_(responses_[i].prior().channel.mv); }
 
-  /// A few sizes of the grid of a parameter, or 0 and 2 of a gain, of which the response is linear.
+  /// A few sizes of the grid of a parameter, or 0 and 2 for a gain, whose response is linear.
   std::vector<double> tried_sizes(std::size_t i) const {
     if (responses_[i].is_linear())
       return {0.0, 2.0};
@@ -138,7 +138,7 @@ class GrowingSearch {
       rows.row(1 + q + static_cast<Eigen::Index>(n)) =
           responses_[i].at(sizes[n], input(i), initial(i)) / deviation_;
     double unused = 0.0;
-    // A ramp changes slowly against the memory of the noise: it may be whitened with the response.
+    // A ramp changes slowly against the memory of the noise, so it may multiply the whitened response.
     const Eigen::MatrixXd white = whitened(base_.models, rows, unused);
     const Explained explained(white.row(0), white.middleRows(1, q));
     const double most = responses_[i].is_linear() ? 1e3 : kMostStretch;
@@ -160,8 +160,8 @@ class GrowingSearch {
                                                              const Eigen::Ref<const Eigen::RowVectorXd>&,
                                                              double) const;
 
-  /// The response, or its slope, where this part (N) of the mismatch is there at each sample, as
-  /// ChangingPlant has it: a gain goes over at the input, anything else at the output.
+  /// The response, or its slope, if this part (N) of the mismatch is present at each sample, as in
+  /// ChangingPlant: a gain changes at the input, anything else at the output.
   Eigen::RowVectorXd of_part(Response what, std::size_t i, double size,
                              const Eigen::RowVectorXd& part) const {
     const MismatchResponses& response = responses_[i];
@@ -170,7 +170,7 @@ class GrowingSearch {
     return (response.*what)(size, input(i), initial(i)).cwiseProduct(part) / deviation_;
   }
 
-  /// log L less that of what all hypotheses share, and its slopes.
+  /// log L, except for what all hypotheses share, and its slopes.
   Look look(std::size_t i, const Growth& at, const Eigen::Ref<const Eigen::MatrixXd>& directions) const {
     const Eigen::Index q = directions.rows();
     const Eigen::RowVectorXd share = ramp(samples_, at(1), at(2));
@@ -202,7 +202,8 @@ class GrowingSearch {
     return at;
   }
 
-  /// At least that of the prior: a standard deviation is not larger than the width of what is possible.
+  /// Adds the information of the prior, so that no standard deviation is larger than the width of the
+  /// possible range.
   Eigen::Matrix3d with_prior(std::size_t i, Eigen::Matrix3d information) const {
     const auto [low, high] = support(responses_[i].prior().size);
     const Eigen::Array3d widths(high - low, record(), record());
@@ -219,7 +220,7 @@ class GrowingSearch {
     return evidence(i, at, here);
   }
 
-  /// To the largest likelihood, from `at` on.
+  /// Climbs to the largest likelihood, from `at` on.
   Look climb(std::size_t i, const Eigen::Ref<const Eigen::MatrixXd>& directions, Growth& at) const {
     Look here = look(i, at, directions);
     for (int step = 0; step < kMostRefinements; ++step) {

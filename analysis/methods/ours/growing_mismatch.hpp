@@ -21,8 +21,8 @@ struct GrowingMismatch {
   double log_likelihood;  ///< at the best size, onset and end
 };
 
-/// What is unknown of the model where this mismatch (its place, its size) is there in this part (N) at each
-/// sample, q x N in standard deviations of the noise.
+/// The directions of what is unknown about the model if this part (N) of a mismatch (its place, its size) is
+/// present at each sample, q x N in standard deviations of the noise.
 using DirectionsOfGrowing =
     std::function<Eigen::MatrixXd(std::size_t mismatch, double size, const Eigen::RowVectorXd& part)>;
 
@@ -33,7 +33,7 @@ using DirectionsOfGrowing =
 /// m(theta, r) is the response to a mismatch of which the share r(k) is present at sample k, as in
 /// ChangingPlant: a gain changes at the input, anything else at the output. The evidence is the integral over
 /// size, onset and end by Laplace's method. The onset is uniform over the record, the growth uniform up to
-/// its length. Onsets of a coarse grid are tried of every parameter; the best few are refined by Gauss and
+/// its length. Onsets of a coarse grid are tried for every parameter; the best few are refined by Gauss and
 /// Newton, at first with the Z of a healthy model, and then with `directions`.
 ///
 /// | symbol | name      | shape         | unit                             |

@@ -14,9 +14,10 @@
 namespace mpm {
 namespace {
 
-/// Standard deviation of the response at rest of the CV that moves most, in those of its noise.
+/// Ends of the size of a disturbance: the standard deviation of the static response of the CV that moves
+/// most, in those of its noise.
 constexpr double kSmallestMove = 0.1, kLargestMove = 1000.0;
-/// The first look: shares of the logarithms of time constant and size.
+/// The points of the first look, as shares of the ranges of the logarithms of time constant and size.
 constexpr std::array kFirstTimes{0.25, 0.5, 0.8};
 constexpr std::array kFirstSizes{0.1, 0.3, 0.5, 0.7, 0.9};
 constexpr double kFarBehind = 40.0;   // of log L at the first look
@@ -50,7 +51,7 @@ Quadratic quadratic_about(const LogLikelihood& log_likelihood, const LogPoint& a
   return model;
 }
 
-/// With curvatures of at least one over the width of the prior squared.
+/// The curvature, with diagonal elements of at least one over the squared width of the prior.
 Eigen::Matrix2d at_least(const Eigen::Matrix2d& curvature, const LogPoint& width) {
   Eigen::Matrix2d all = curvature;
   for (Eigen::Index i = 0; i < 2; ++i)
@@ -75,7 +76,7 @@ class InputLikelihood::OfCvs {
     }
   }
 
-  /// x(k+1) = a x(k) + b w(k); with the directions of the models, or of e alone.
+  /// log L under x(k+1) = a x(k) + b w(k), with the directions of the models, or of e alone.
   double operator()(double a, double b, bool directions) const {
     const SharedProducts sums = whitening_.products(a, b, directions);
     const Eigen::Index q = sums.products.front().rows() - 1;
@@ -126,7 +127,8 @@ class InputLikelihood::OfCvs {
   std::vector<Eigen::Index> directions_;
 };
 
-/// The work on one MV, over the CVs that it moves; log L of the others is the same for every disturbance.
+/// The search for a disturbance on one MV, over the CVs that it moves; log L of the others is the same for
+/// every disturbance.
 class InputLikelihood::OfMv {
  public:
   OfMv(const InputLikelihood& all, Eigen::Index mv) : sample_time_(all.sample_time_) {
@@ -155,7 +157,7 @@ class InputLikelihood::OfMv {
 
   bool moves() const { return of_moved_.has_value(); }
 
-  /// The best of a few points by e alone: where to search, and log L there.
+  /// Takes the best of a few points by e alone as the start of the search, and returns log L there.
   double first_look() {
     double best = -kInfinity;
     for (const double time : kFirstTimes)

@@ -14,7 +14,7 @@ namespace mpm {
 /// The evidence for a disturbance on one MV.
 struct InputEvidence {
   double log_evidence;  ///< in the measure of CvEvidence::healthy, summed over the CVs
-  double a, b;          ///< of the likeliest one, b in MV units
+  double a, b;          ///< of the likeliest disturbance, b in MV units
 };
 
 /// A disturbance x between controller and plant moves all CVs at once, each through its channel of the model,
@@ -22,8 +22,8 @@ struct InputEvidence {
 ///   e_i = G0_ij x + Z_i' z_i + n_i,   x(k+1) = a x(k) + b w(k),   z_i ~ N(0, I),
 ///
 /// with the noise n_i and the directions Z_i of ModelErrors. The evidence is the integral over time constant
-/// and standard deviation of x, both log-uniform, by Laplace's method about the likeliest. The variance of
-/// the innovations of each CV is known up to a factor of its own (ScaleLikelihood).
+/// and standard deviation of x, both log-uniform, by Laplace's method about the likeliest point. The variance
+/// of the innovations of each CV is known up to a factor of its own (ScaleLikelihood).
 ///
 /// | symbol  | name      | shape        | unit                              |
 /// |---------|-----------|--------------|-----------------------------------|
@@ -31,7 +31,7 @@ struct InputEvidence {
 /// | j       | mv        |              |                                   |
 class InputLikelihood {
  public:
-  /// `series` has one matrix a CV; NaN in the first row where there is no sample.
+  /// `series` has one matrix for each CV, with NaN in its first row where there is no sample.
   InputLikelihood(const std::vector<ModelErrors>& models, const std::vector<Eigen::MatrixXd>& series,
                   double sample_time, double noise_freedom);
 
@@ -50,7 +50,7 @@ class InputLikelihood {
   const std::vector<ModelErrors>& models_;
   const std::vector<Eigen::MatrixXd>& series_;
   double sample_time_, freedom_;
-  std::vector<LogLikelihood> unmoved_;  ///< of each CV without a disturbance; 0 where all inputs move it
+  std::vector<LogLikelihood> unmoved_;  ///< of each CV without a disturbance; 0 if all inputs move it
 };
 
 }  // namespace mpm

@@ -14,22 +14,24 @@
 namespace mpm {
 namespace {
 
-/// Samples of a CV, a round number: fewer hardly tell the noise from a dozen errors.
+/// The fewest samples of a CV from which errors are learnt, a round number: fewer hardly tell the noise from
+/// a dozen errors.
 constexpr Eigen::Index kFewestLearnt = 30;
 
-/// Does it have enough samples, and every input?
+/// Returns whether the benchmark has enough samples of each CV and every sample of the inputs.
 bool learns_from(const AssessedLoop& benchmark) {
   return model_inputs(benchmark.from_start()).allFinite() &&
          ((!benchmark.y.array().isNaN()).rowwise().count() >= kFewestLearnt).all();
 }
 
-/// The errors of the model, learnt by the first who asks for them: a method that does not costs nothing.
+/// The errors of the model, learnt when they are first asked for, so that methods that do not need them cost
+/// nothing.
 class LearntWhenAsked final : public ModelCorrection {
  public:
   LearntWhenAsked(const AssessmentContext& context, AssessedLoop benchmark)
       : study_(context.study), initial_u_(context.basis.point.u), benchmark_(std::move(benchmark)) {}
 
-  /// Throws InputError where the likelihood of what the benchmark shows has no number.
+  /// Throws InputError if the likelihood of what the benchmark shows is not a number.
   std::shared_ptr<const LearntModel> model() const {
     if (!model_ && failure_.empty())
       learn();
@@ -59,7 +61,7 @@ class LearntWhenAsked final : public ModelCorrection {
   mutable std::string failure_;
 };
 
-/// As far as the study alone says it; `automatic` where the benchmark does.
+/// The assumption as far as the study alone tells it; `automatic` if the benchmark decides.
 ModelAssumption stated_assumption(const Study& study) {
   if (study.assessment.model != AssessmentModel::automatic)
     return {study.assessment.model, "the study says so"};

@@ -40,7 +40,7 @@ std::string to_string(const ModelAssumption& assumption);
 /// likelihood of the benchmark is not a number. Study and basis of the context must outlive it.
 void learn_model(const AssessedLoop& benchmark, AssessmentContext& context);
 
-/// What was learnt; null where nothing was. Throws the InputError of the first use.
+/// What was learnt; null if nothing was. Throws the InputError of the first use.
 std::shared_ptr<const LearntModel> learnt_model(const AssessmentContext& context);
 
 /// The context of the loops of `study`. Its benchmark is the record of the basis case, which has no fault;

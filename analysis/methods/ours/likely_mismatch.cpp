@@ -55,7 +55,7 @@ class SuspectedChannel {
     return h;
   }
 
-  /// What a mismatch must exceed that brings nothing.
+  /// The L that a mismatch must exceed to gain anything.
   double none(Eigen::Index onset) const {
     const double parameters = onset > 0 ? 3.0 : 2.0;
     return errors_.none() + 0.5 * parameters * errors_.log_samples();

@@ -23,12 +23,12 @@ struct LikelyMismatch {
 /// The signal of an input, N of the loop.
 Eigen::RowVectorXd input_of(const Study& study, const AssessedLoop& loop, Eigen::Index place);
 
-/// N of the loop: the response of a channel to x, which rests at its first value before.
+/// The response of a channel to x, N of the loop. Before the loop, x rests at its first value.
 Eigen::RowVectorXd response_of(const Study& study, const TransferFunction& channel,
                                const Eigen::RowVectorXd& x);
 
-/// The best one of a CV: a gain of 0.3 to 3.3 times that of the model, or a time constant or dead time on a
-/// grid, throughout or from the sample on from which another gain explains most.
+/// The best mismatch of a CV: a gain of 0.3 to 3.3 times that of the model, or a time constant or dead time
+/// on a grid. It lasts throughout or begins at the sample from which a different gain explains most.
 LikelyMismatch likely_mismatch(const Study& study, const AssessedLoop& loop, const CvErrors& errors,
                                Eigen::Index cv);
 

@@ -15,7 +15,7 @@ constexpr double kFinestShift = 0.25,
 constexpr int kFewestCells = 2, kMostCells = 31;
 constexpr double kSlopeStep = 1e-3;  // relative, or in samples
 
-/// Sizes at the same ratio.
+/// Sizes at equal ratios.
 std::vector<double> factor_grid(double low, double high) {
   const int cells =
       std::clamp(static_cast<int>(std::ceil(std::log(high / low) / kFactorCell)), kFewestCells, kMostCells);
@@ -26,7 +26,7 @@ std::vector<double> factor_grid(double low, double high) {
   return sizes;
 }
 
-/// Shifts that grow on both sides of 0, where small ones stand close together.
+/// Shifts on both sides of 0, closest together around 0.
 std::vector<double> shift_grid(double low, double high, double sample_time) {
   std::vector<double> sizes{low, high};
   if (low < 0.0 && high > 0.0)
@@ -47,8 +47,8 @@ std::vector<double> grid_of(const SizePrior& prior, double sample_time) {
   return low > 0.0 ? factor_grid(low, high) : std::vector<double>{low, 0.5 * (low + high), high};
 }
 
-/// What the channel has beside its states: the sum of its pulse responses, and before the record its last
-/// coefficient.
+/// Adds the part of the channel that is not in its states: the sum of its pulse responses to u, and its last
+/// coefficient for the input before the record.
 void add_coefficients(const Eigen::VectorXd& step, const Eigen::Ref<const Eigen::RowVectorXd>& u,
                       double initial_u, Eigen::RowVectorXd& y) {
   if (step.size() == 0)
@@ -142,7 +142,7 @@ Eigen::RowVectorXd MismatchResponses::at(double size, const Eigen::Ref<const Eig
 }
 
 DiscreteChannel MismatchResponses::channel_at(double size) const {
-  // The ends of a support may lie beyond what is possible by rounding.
+  // By rounding, the ends of a support may lie beyond what is possible.
   const double possible =
       prior_.parameter == MismatchParameter::dead_time ? std::max(size, -nominal_.dead_time()) : size;
   const Mismatch mismatch{0, 0, prior_.parameter, possible};

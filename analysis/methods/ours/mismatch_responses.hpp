@@ -32,7 +32,7 @@ class MismatchResponses {
   bool is_linear() const {
     return prior_.parameter == MismatchParameter::gain || prior_.parameter == MismatchParameter::sign;
   }
-  /// m at every size, sizes x N, or G0 u alone (1 x N) when it is linear.
+  /// m at every size, sizes x N, or G0 u alone (1 x N) if m is linear.
   Eigen::MatrixXd on_grid(const Eigen::Ref<const Eigen::RowVectorXd>& u, double initial_u) const;
   /// m at this size.
   Eigen::RowVectorXd at(double size, const Eigen::Ref<const Eigen::RowVectorXd>& u, double initial_u) const;
@@ -48,7 +48,7 @@ class MismatchResponses {
   double sample_time_;
   DiscreteChannel nominal_channel_;
   std::vector<double> sizes_;
-  std::vector<DiscreteChannel> channels_;  ///< at these; empty when it is linear
+  std::vector<DiscreteChannel> channels_;  ///< at these sizes; empty if m is linear
 };
 
 }  // namespace mpm

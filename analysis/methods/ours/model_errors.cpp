@@ -21,18 +21,19 @@
 namespace mpm {
 namespace {
 
-/// Of a direction, over the whole record and in variances of the noise: what less has changes log L by less
-/// than half of it.
+/// Size of a faint direction, over the whole record and in variances of the noise: a fainter one changes log
+/// L by less than half of this.
 constexpr double kFaintDirection = 0.05;
 constexpr double kSmallestFactor = 0.05;
 constexpr int kGaussNewtonSteps = 3;
-/// Gains that wander: what is tried, the gain of log L that speaks for it, and the corners of a benchmark.
+/// Gains that wander: the sizes that are tried, the gain of log L that a size needs, and the corners of a
+/// benchmark.
 constexpr std::array kWanders{0.05, 0.1, 0.2, 0.02};
 constexpr double kSpeaksForWander = 3.0;
 constexpr Eigen::Index kCorners = 8;
-/// Of a standardised error that is held at its bound.
+/// Rounding of a standardised error that is held at its bound.
 constexpr double kRoundingOfBound = 1e-6;
-/// Smallest noise against the size of the outputs: that of their rounding in a record without noise.
+/// Smallest noise, relative to the size of the outputs: their rounding in a record without noise.
 constexpr double kLeastNoise = 1e-6;
 
 double variance_of(const Distribution& drawn) {
@@ -55,7 +56,7 @@ void add_error(std::vector<ChannelError>& errors, Eigen::Index input, MismatchPa
     errors.push_back({input, parameter, deviation});
 }
 
-/// A channel with one error, as far as it can have it.
+/// A channel with one error, as far as the channel can have it.
 TransferFunction with_error(const TransferFunction& channel, const ChannelError& error, double value) {
   if (error.parameter == MismatchParameter::dead_time)
     value = std::max(value, -channel.dead_time());
@@ -64,7 +65,7 @@ TransferFunction with_error(const TransferFunction& channel, const ChannelError&
   return with_mismatches(TransferMatrix{{channel}}, {{0, 0, error.parameter, value}})(0, 0);
 }
 
-/// Rows with the same Z' Z except for faint ones: along the axes of Z Z', of which few count.
+/// Rows with the same Z' Z except for faint directions: those along the axes of Z Z', of which few count.
 Eigen::MatrixXd strong(const Eigen::MatrixXd& Z) {
   if (Z.rows() == 0)
     return Z;
@@ -73,7 +74,8 @@ Eigen::MatrixXd strong(const Eigen::MatrixXd& Z) {
   return eigen.eigenvectors().rightCols(Z.rows() - faint).transpose() * Z;
 }
 
-/// Of the coefficients z ~ N(0, I) of the rows Z below the first one of `series`, e = Z' z + noise.
+/// The posterior of the coefficients z ~ N(0, I) in e = Z' z + noise. e is the first row of `series`, and Z
+/// the rows below it.
 struct Coefficients {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
@@ -88,9 +90,9 @@ Coefficients coefficients(const BaseNoise& noise, const Eigen::Ref<const Eigen::
   return {covariance * (Z * white.row(0).transpose()), std::move(covariance)};
 }
 
-/// P-value of no errors: with the posterior of coefficients z ~ N(0, I), P = covariance^-1 - I is what the
-/// record tells of z and b = covariance^-1 mean ~ N(0, P) without errors. Directions in which it tells next
-/// to nothing have no freedom.
+/// The p-value of no errors, from the posterior of coefficients z ~ N(0, I). P = covariance^-1 - I is what
+/// the record tells about z, and without errors b = covariance^-1 mean ~ N(0, P). Directions about which it
+/// tells next to nothing have no degree of freedom.
 double p_of_none(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) {
   if (mean.size() == 0)
     return 1.0;
@@ -108,8 +110,8 @@ double p_of_none(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance)
   return freedom > 0 && std::isfinite(chi_squared) ? chi_squared_upper_tail(chi_squared, freedom) : 1.0;
 }
 
-/// The mean of a normal vector that is nowhere below `least`: what lies lowest below it is held there, one
-/// after the other.
+/// The mean of a normal vector that is nowhere below `least`: the element that lies lowest below is held
+/// there, one after the other.
 Eigen::VectorXd bounded_mean(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                              const Eigen::VectorXd& least) {
   std::vector<Eigen::Index> held;
@@ -123,7 +125,7 @@ Eigen::VectorXd bounded_mean(const Eigen::VectorXd& mean, const Eigen::MatrixXd&
   return bounded;
 }
 
-/// y of the window where it is no bad value, from rows that are early by some samples.
+/// y of the window without bad values, from rows that are early by some samples.
 Eigen::RowVectorXd y_at_samples(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index early) {
   if (early == 0)
     return without_standstills(loop.y.row(cv));
