@@ -202,7 +202,7 @@ ModelErrors::ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPr
         error.parameter == MismatchParameter::dead_time)
       least_errors(i) = -late_(0, error.input).dead_time() / error.deviation;
   Eigen::MatrixXd covariance;
-  // Gauss and Newton: where outputs move by a hundred times the noise, a slope is not enough.
+  // Gauss and Newton: if outputs move by a hundred times the noise, one slope is not enough.
   for (int step = 0; step < kGaussNewtonSteps; ++step) {
     unknown.topRows(p) = slopes(inputs, initial);
     const Eigen::RowVectorXd left = e - correction(inputs, initial) + mean_.transpose() * unknown.topRows(p);
@@ -408,7 +408,7 @@ LearntModel::LearntModel(const Study& study, const Eigen::Ref<const Eigen::Vecto
 
 std::vector<ModelErrors> LearntModel::errors_of(const Study& study, const AssessedLoop& benchmark,
                                                 Eigen::Index early, double late) const {
-  // Of a window the inputs before it are known, too.
+  // The inputs before a window are known, too.
   const AssessedLoop& whole = benchmark.from_start();
   std::vector<ModelErrors> cvs;
   for (Eigen::Index cv = 0; cv < study.cv_count(); ++cv)
@@ -470,7 +470,7 @@ Eigen::MatrixXd LearntModel::series(const AssessedLoop& loop, Eigen::Index cv) c
   const Eigen::MatrixXd inputs = model_inputs(whole);
   const ModelErrors& errors = of(cv);
   const Eigen::RowVectorXd correction = errors.correction(inputs, initial_);
-  // Not what wanders: free in each record, it would take a part of every mismatch.
+  // Without the rows that wander: they are free in each record and would take a part of every mismatch.
   const Eigen::MatrixXd Z = errors.directions(errors.slopes(inputs, initial_).topRows(errors.count()));
   Eigen::MatrixXd series(1 + Z.rows(), whole.samples());
   series.row(0).setConstant(kNaN);
@@ -480,7 +480,8 @@ Eigen::MatrixXd LearntModel::series(const AssessedLoop& loop, Eigen::Index cv) c
   return series;
 }
 
-/// ny x N of the record; the samples of the window alone say what is most probable.
+/// The errors that the model explains, ny x N of the record. Only the samples of the window tell what is most
+/// probable.
 Eigen::MatrixXd LearntModel::explained(const AssessedLoop& loop) const {
   const AssessedLoop& whole = loop.from_start();
   const Eigen::MatrixXd inputs = model_inputs(whole);
@@ -491,7 +492,8 @@ Eigen::MatrixXd LearntModel::explained(const AssessedLoop& loop) const {
     const auto unknown = own.bottomRows(own.rows() - 1);
     if (unknown.rows() == 0 || (!own.row(0).array().isNaN()).count() < kFewestNoiseSamples)
       continue;
-    // Under the noise that this record shows, so that a disturbance is not taken for errors of the model.
+    // The noise is the one that this record shows, so that a disturbance is not taken for errors of the
+    // model.
     const BaseNoise noise = noise_posterior(own.row(0), unknown, least_noise(whole.y_sim.row(cv))).best;
     sum.row(cv) += coefficients(noise, own).mean.transpose() * unknown;
   }

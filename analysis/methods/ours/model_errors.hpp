@@ -16,7 +16,7 @@
 
 namespace mpm {
 
-/// One error that a channel of the model may have: normal about none.
+/// One error that a channel of the model may have, normally distributed about no error.
 struct ChannelError {
   Eigen::Index input;  ///< of the channel: an MV or an MD
   MismatchParameter parameter;
@@ -33,8 +33,8 @@ struct ModelErrorPrior {
 /// The error of a dead time shorter than a sample is this share of a sample.
 ModelErrorPrior relative_errors(const Study& study, Eigen::Index cv, double share, double bias);
 
-/// The errors of gain, time constant and dead time that the worlds of the study draw, as normal ones of their
-/// variance; none without worlds. Further lags and the background are not among them.
+/// The errors of gain, time constant and dead time that the worlds of the study draw, as normal errors with
+/// the same variance; none without worlds. Further lags and the background are not included.
 ModelErrorPrior drawn_errors(const Study& study, Eigen::Index cv);
 
 /// The inputs of the model, (nu + nd) x N.
@@ -46,66 +46,68 @@ Eigen::MatrixXd model_inputs(const AssessedLoop& loop);
 ///
 ///   e = S delta + W eta + c + n,    delta ~ N(0, D^2),    eta ~ N(0, wander^2),    c ~ N(0, bias^2),
 ///
-/// in closed loop, too, because S of a sample is made of inputs before it. W are errors of the gains that
-/// wander along the record, as those of a nonlinear plant do: the response of each channel times a polygon in
-/// time with free corners. The benchmark gives the sizes of n and eta by their marginal likelihood, and delta
-/// a mean, with which the model is corrected, and a covariance. eta differs from record to record.
+/// which holds in closed loop, too, because S at a sample follows from inputs before it. W are errors of
+/// gains that wander along the record, as those of a nonlinear plant do: the response of each channel times a
+/// polygon in time with free corners. The benchmark gives the sizes of n and eta by their marginal
+/// likelihood. It gives delta a mean, by which the model is corrected, and a covariance. eta differs from
+/// record to record.
 class ModelErrors {
  public:
-  /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample, `inputs` (nu + nd x N)
-  /// with `initial` (nu + nd) before them what moved the model. The noise is that which is `known`, or is
-  /// learnt with a deviation of `least` or more. The errors are those of a model whose channels all have a
-  /// dead time that is longer by `late` >= 0, in the time unit of the plant. Throws InputError for fewer than
+  /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample. `inputs` (nu + nd x
+  /// N), with `initial` (nu + nd) before them, are what moved the model. The noise is the `known` one, or it
+  /// is learnt with a deviation of `least` or more. The errors are those of a model in which the dead time of
+  /// every channel is longer by `late` >= 0, in the time unit of the plant. Throws InputError for fewer than
   /// kFewestNoiseSamples samples.
   ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPrior& prior,
               const Eigen::Ref<const Eigen::RowVectorXd>& e, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
               const Eigen::Ref<const Eigen::VectorXd>& initial, double least,
               const std::optional<BaseNoise>& known = {}, double late = 0.0);
-  /// Of a model without errors, under this noise.
+  /// A model without errors, under this noise.
   ModelErrors(const Study& study, Eigen::Index cv, const BaseNoise& noise);
 
   /// 1 x (nu + nd): the model of the CV, corrected by the mean of the errors.
   const TransferMatrix& model() const { return model_; }
-  /// The same without what is `late` of it: the rows of a record may be, the plant is not. No dead time is
-  /// below 0.
+  /// The same without the dead time `late`: the rows of a record may be late, but the plant is not. No dead
+  /// time is below 0.
   TransferMatrix plant() const;
   const BaseNoise& noise() const { return noise_.best; }
   const NoisePosterior& noises() const { return noise_; }
-  /// Does the benchmark speak against a model without errors? It does where errors wander, or where the
-  /// score test of delta = 0 rejects: b = S' R^-1 e, with the noise and the constant taken out of both, is
-  /// N(0, S' R^-1 S) without errors, and b' (S' R^-1 S)^-1 b chi squared.
+  /// Whether the benchmark rejects a model without errors. It does if errors wander, or if the score test
+  /// rejects delta = 0: without errors b = S' R^-1 e, with the noise and the constant taken out of both, is
+  /// N(0, S' R^-1 S), and b' (S' R^-1 S)^-1 b is chi squared.
   bool rejects_exact_model() const { return wanders() || exact_p_ < kRejectsExact; }
   /// Whether errors change along a healthy record, as those of a nonlinear plant do.
   bool wanders() const { return wander_ > 0.0; }
-  /// Whether the benchmark shows more than a background beside the errors, so that these may be others than
-  /// are looked for.
+  /// Whether the benchmark shows more than a background beside the errors, so that the true errors may not be
+  /// those that are searched for.
   bool are_doubtful() const { return wanders() || slow_part(noise_.best) > kMostBackground; }
-  /// Of the errors, without the constant.
+  /// The number of errors, without the constant.
   Eigen::Index count() const { return mean_.size(); }
-  /// The model with errors out of their posterior, of `z` ~ N(0, I) of the size count().
+  /// The model with errors drawn from their posterior, by a `z` ~ N(0, I) of the size count().
   TransferMatrix drawn(const Eigen::Ref<const Eigen::VectorXd>& z) const;
 
-  /// The corrected simulation error of a record, N.
+  /// The part of the simulation error of a record that the correction of the model explains, N.
   Eigen::RowVectorXd correction(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                 const Eigen::Ref<const Eigen::VectorXd>& initial) const;
   /// D S of a record and below it wander W, in CV units.
   Eigen::MatrixXd slopes(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                          const Eigen::Ref<const Eigen::VectorXd>& initial) const;
-  /// The same where a channel has this mismatch, from the slopes without it. Further rows below stay as they
+  /// The same if a channel has this mismatch, from the slopes `without` it. Further rows below stay as they
   /// are.
   Eigen::MatrixXd slopes(Eigen::MatrixXd without, const Mismatch& mismatch,
                          const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                          const Eigen::Ref<const Eigen::VectorXd>& initial) const;
-  /// What is still unknown, q x N in standard deviations of the noise: the error of the corrected model is
-  /// Z' z + n, z ~ N(0, I). Further rows of `slopes`, in CV units, are unknown as well. Directions that no
-  /// record can tell from none are left out.
+  /// The directions Z of what is still unknown, q x N in standard deviations of the noise: the error of the
+  /// corrected model is Z' z + n, z ~ N(0, I). Further rows of `slopes`, in CV units, are unknown as well.
+  /// Directions that no record can tell from zero are left out.
   Eigen::MatrixXd directions(const Eigen::Ref<const Eigen::MatrixXd>& slopes) const;
 
  private:
   static constexpr double kMostBackground = 1.0;  ///< slow part of the noise over the white one
   static constexpr double kRejectsExact = 1e-4;   ///< p-value below which an exact model is rejected
 
-  /// The response to a change of one channel: of an error, over one standard deviation to either side.
+  /// The response to a change of one channel. For an error the change is one standard deviation to either
+  /// side.
   struct Slope {
     Eigen::Index input;
     DiscreteChannel above, below;
@@ -116,12 +118,13 @@ class ModelErrors {
   };
 
   Slope slope_of(const TransferMatrix& model, const ChannelError& error) const;
-  /// The noise, and whether errors vary in time, from the residual of the mean in a healthy record. `unknown`
-  /// are the rows that explain a part of it.
+  /// Learns the noise, and whether errors vary in time, from the residual of the mean in a healthy record,
+  /// `left`. `unknown` are the rows that explain a part of it.
   void learn_noise(const Eigen::Ref<const Eigen::RowVectorXd>& left, const Eigen::MatrixXd& unknown,
                    const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                    const Eigen::Ref<const Eigen::VectorXd>& initial, double least);
-  /// Rows of gains that wander: of each channel its response times a hat of each corner.
+  /// Rows of gains that wander: for each channel and each corner, the response of the channel times a hat
+  /// about the corner.
   Eigen::MatrixXd wandering(const TransferMatrix& model, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                             const Eigen::Ref<const Eigen::VectorXd>& initial) const;
   /// The model with these errors, in their standard deviations.
@@ -141,13 +144,13 @@ class ModelErrors {
 };
 
 /// The model of all CVs with its errors, as the benchmark of a loop shows them. The clock of the record may
-/// be another one than that of the model: models are tried whose outputs are half a sample or a sample early
-/// or late, the same for all CVs, and the most probable one is corrected. No model is early, since dead times
-/// end at 0: of CVs that are early by up to m samples, row k is compared with the model m samples later, and
-/// the model is late by the rest.
+/// differ from that of the model. So models are tried whose outputs are half a sample or a sample early or
+/// late, the same for all CVs, and the most probable one is corrected. No model is early, since dead times
+/// end at 0: if CVs are early by up to m samples, row k is compared with the model m samples later, and the
+/// model is late by the rest.
 class LearntModel final : public ModelCorrection {
  public:
-  /// Priors of relative_errors(). Throws InputError as ModelErrors.
+  /// The priors are those of relative_errors(). Throws InputError like ModelErrors.
   LearntModel(const Study& study, const Eigen::Ref<const Eigen::VectorXd>& initial_u,
               const AssessedLoop& benchmark, double share, double bias);
 
@@ -156,19 +159,21 @@ class LearntModel final : public ModelCorrection {
   double late() const { return late_; }
   /// errors_in_window() with the rows of the CV at the samples of the model.
   Eigen::RowVectorXd errors(const AssessedLoop& loop, Eigen::Index cv) const;
-  /// errors() of the CV in the record less their correction, and below them what is still unknown of the
-  /// model but for what wanders, (1 + q) x N in CV units: row 0 is Z' z and noise, z ~ N(0, I).
+  /// errors() of the CV in the record less their correction, and below them the directions Z of what is still
+  /// unknown about the model, without those that wander, (1 + q) x N in CV units. Row 0 is Z' z plus noise, z
+  /// ~ N(0, I).
   Eigen::MatrixXd series(const AssessedLoop& loop, Eigen::Index cv) const;
-  /// The first CV whose benchmark rejects an exact model, which one of another clock does; none if no
-  /// benchmark does.
+  /// The first CV whose benchmark rejects an exact model; none if no benchmark does. All do if the clock of
+  /// the record differs.
   std::optional<Eigen::Index> rejects_exact_model() const;
-  /// The same from the samples of the benchmark for whose position `uses` is true; none if they are too few.
+  /// The errors of the CV from those samples of the benchmark for whose position `uses` is true; none if
+  /// these are too few.
   std::optional<ModelErrors> of_part(const Study& study, const AssessedLoop& benchmark, Eigen::Index cv,
                                      const std::function<bool(Eigen::Index)>& uses) const;
   /// The plant without a fault, as far as the benchmark shows it: ModelErrors::plant() of all CVs, without
-  /// washouts. Its outputs are of the time of the inputs; rows of the record are later by late().
+  /// washouts. Its outputs have the clock of the inputs; rows of the record are later by late().
   TransferMatrix plant() const;
-  /// By the mean of the errors, and by the most probable rest given the loop.
+  /// Corrects the loop by the mean of the errors, and by the rest that is most probable given the loop.
   std::shared_ptr<const AssessedLoop> corrected(const AssessedLoop& loop) const override;
 
  private:
@@ -186,8 +191,8 @@ class LearntModel final : public ModelCorrection {
 };
 
 /// y - y_sim of a CV over the whole record, NaN outside of the window, where a sample is an outlier, and
-/// where y stands as if a bad value were kept (without_standstills()). Rows of y that are `early` by some
-/// samples are shifted back.
+/// where y stands still as if a bad value were kept (without_standstills()). Rows of y that are `early` by
+/// some samples are shifted back.
 Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index early = 0);
 
 /// The deviation below which the simulation errors of a CV are rounding of its outputs.

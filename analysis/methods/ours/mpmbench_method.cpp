@@ -24,50 +24,54 @@
 namespace mpm {
 namespace {
 
-// Chosen on the suite under seed 5150, looked at under its own.
+// Chosen on the suite under the seed 5150, checked under the suite's own seed.
 constexpr double kNoHelp = 0.05;  ///< p above which the MVs do not help to predict the error
-/// The MVs explain so much of the error that a mismatch alone does: log p of their test over that of its
-/// colour.
+/// A mismatch alone explains the error if log p of the test of the MVs, over that of the colour of the error,
+/// is above this.
 constexpr double kMostlyMismatch = 0.2;
 // Chosen under the development seeds 7, 8 and 11 of the suite.
 constexpr double kSureMismatch = 6.0;  ///< gain of log L beside noise of any shape (LikelyMismatch)
 constexpr double kSurelyBoth = 1e-10;  ///< probability of a mismatch alone over that of both
 /// Distance of Ivar from 1 that noise and errors of the model do not explain.
 constexpr double kMuchMore = 0.5;
-constexpr const char* kValve = "valve_mv";  ///< the number, in `likelihood` too
+constexpr const char* kValve = "valve_mv";  ///< name of the number, also in `likelihood`
 
 /// What a variant of the method does without (docs/suite.md has what each part brings).
 enum class WithoutPart : std::int8_t { none, order, likelihood, other, quiet, noise };
 
 /// The best methods together, in the order in which an engineer asks.
 ///
-/// Does it cost anything? `counterfactual`: the loop is flagged when the variance of a CV is not that of the
-/// simulated nominal loop (band of impact), unless both methods below see no fault: then it is noise.
+/// Does it cost anything? `counterfactual` flags the loop if the variance of a CV is not that of the
+/// simulated nominal loop (band of impact). If both methods below see no fault, the difference is noise, and
+/// the flag is taken back.
 ///
-/// Which CV, and what is it? Of a flagged loop: `likelihood`, the posterior of mismatch, disturbance and
-/// both, and `order`, the test whether the MVs help to predict the error, which knows nothing of the shape of
-/// a disturbance. Where the likelihood sees both, `order` says whether one of them alone is enough. Where
-/// they contradict each other, one naming a mismatch alone and the other a disturbance alone, no source is
-/// named: the data cannot tell. Where errors of the model are learnt and do not wander, the likelihood
-/// decides, and a fault that costs nothing has its source named without a flag. Where it sees both there, the
-/// MVs must help to predict the error, as `order` says, and both be far more probable than a mismatch alone;
-/// or else a mismatch must be likelier than none beside noise of any shape (likely_mismatch()).
+/// Which CV, and what is it? For a flagged loop two methods are asked: `likelihood`, the posterior of
+/// mismatch, disturbance and both, and `order`, the test whether the MVs help to predict the error, which
+/// assumes nothing about the shape of a disturbance. If the likelihood sees both faults, `order` decides
+/// whether one of them alone is enough. If the methods contradict each other, one naming a mismatch alone and
+/// the other a disturbance alone, no source is named: the data cannot tell. If errors of the model are learnt
+/// and do not wander, the likelihood decides, and the source of a fault that costs nothing is named without a
+/// flag. If the likelihood then sees both faults, they are named in two cases: the MVs help to predict the
+/// error, as `order` tests, and both faults are far more probable than a mismatch alone; or a mismatch is
+/// likelier than none beside noise of any shape (likely_mismatch()).
 ///
-/// A loop that costs much more than the nominal one although both methods find nothing in its simulation
-/// errors has another fault than model and disturbances: an operator, a limit, a controller that is not the
-/// one of the study. Asked only where errors of the model are learnt.
+/// If a loop costs much more than the nominal one although both methods find nothing in its simulation
+/// errors, the fault is neither in the model nor a disturbance: an operator, a limit, a controller that is
+/// not the one of the study. This is asked only if errors of the model are learnt.
 ///
-/// And in a record of a plant, whose noise nobody knows? The sources that the likelihood leaves, a sensor, a
-/// valve and the clock, held against each other beside noise of any shape (FaultComparison, source_weights).
-/// The weights of the sources are numbers of the answer, and the verdict on the record.
+/// And in a record of a plant, whose noise nobody knows? Then the sources that the likelihood leaves
+/// possible, a sensor, a valve and the clock are compared with each other beside noise of any shape
+/// (FaultComparison, source_weights). The weights of the sources are numbers of the answer, and the verdict
+/// on the record rests on them.
 ///
-/// Which channel, which parameter, how large, or which valve? `likelihood`, where the source is a mismatch,
-/// or a valve that sticks.
+/// Which channel, which parameter, how large, or which valve? `likelihood` answers this if the source is a
+/// mismatch or a sticking valve.
 ///
-/// How probable? What `likelihood` states, whatever the loop costs. Where the verdict overrules it, what is
-/// true where the evidence speaks for the source that is named (true_sources()), or, of a model without
-/// learnt errors, the probabilities of its likeliest source and of this one change places; where the data
-/// cannot tell, mismatch and disturbance have half of their sum each.
+/// How probable? The probabilities are those that `likelihood` states, whatever the loop costs. If the
+/// verdict overrules it, they are what is true when the evidence speaks for the named source
+/// (true_sources()). For a model without learnt errors, the probabilities of the likeliest source and of the
+/// named one change places instead. If the data cannot tell, mismatch and disturbance have half of their sum
+/// each.
 ///
 /// docs/methods.md has the figures from which the choice was made.
 class Mpmbench final : public AssessmentMethod {
@@ -99,8 +103,8 @@ class Mpmbench final : public AssessmentMethod {
   }
 
  private:
-  /// Says how much each sort of fault weighs, and what is most likely of each. Of a record of a plant nobody
-  /// knows the noise, which may have any shape.
+  /// Adds how much each sort of fault weighs, and the most likely fault of each sort. In a record of a plant
+  /// nobody knows the noise, which may have any shape.
   void weigh(const AssessedLoop& loop, const Assessment& posterior, Assessment& assessment) const {
     SourceWeights weights{source_weights(posterior, assessment)};
     const bool names = assessment.flagged || posterior.flagged;
@@ -132,8 +136,8 @@ class Mpmbench final : public AssessmentMethod {
     add_weights(weights, assessment);
   }
 
-  /// Of the CVs in which something is wrong, the one that shows a value for longest, and longer than chance
-  /// makes it: no other fault leaves such a stretch. -1: none.
+  /// Of the CVs in which something is wrong, the one that shows one value for longest, if this is longer than
+  /// chance explains: no other fault leaves such a stretch. -1: none.
   static Eigen::Index frozen_cv(const AssessedLoop& loop, const Assessment& posterior) {
     Eigen::Index frozen = -1, longest = 0;
     for (Eigen::Index cv = 0; cv < loop.y.rows(); ++cv) {
@@ -182,7 +186,7 @@ class Mpmbench final : public AssessmentMethod {
     mpm = ud = (mpm + ud) / 2.0;
   }
 
-  /// What a method says of the loop; nothing where the variant does without it.
+  /// The answer of a method on the loop; none if the variant does without the method.
   Assessment asked(Assessor& method, WithoutPart part, const AssessedLoop& loop) const {
     return without_ == part ? Assessment::not_applicable("the variant does without it") : method.assess(loop);
   }
@@ -204,7 +208,7 @@ class Mpmbench final : public AssessmentMethod {
         assessment.cvs[static_cast<std::size_t>(*other)].source = FaultSource::other;
       return;
     }
-    // A method that has no answer for this loop leaves the others theirs.
+    // If a method has no answer for this loop, those of the others count.
     if (posterior.status == AssessmentStatus::ok)
       assessment.cvs = posterior.cvs;
     else if (order.status == AssessmentStatus::ok)
@@ -228,7 +232,7 @@ class Mpmbench final : public AssessmentMethod {
     assessment.named_mismatch = posterior.named_mismatch;
   }
 
-  /// What both say of the CV, or the one that has an answer.
+  /// The source that both methods together see in the CV, or that of the only one with an answer.
   FaultSource agreed_source(const AssessedLoop& loop, const Assessment& posterior, const Assessment& order,
                             Eigen::Index cv) const {
     const auto of = [cv](const Assessment& said) {
@@ -240,7 +244,7 @@ class Mpmbench final : public AssessmentMethod {
       return tested;
     if (order.status != AssessmentStatus::ok)
       return probable;
-    // Where the errors of the model are known for what they are, its posterior is the better judge, but of
+    // If errors of the model are learnt and do not wander, the posterior is the better judge, except of
     // disturbances of another shape than its own.
     if (learnt_ && !learnt_->of(cv).wanders())
       return probable == FaultSource::mpm_ud ? both_or_one(loop, posterior, tested, cv) : probable;
@@ -251,8 +255,8 @@ class Mpmbench final : public AssessmentMethod {
     return contradiction ? FaultSource::none : probable;
   }
 
-  /// Where errors of the model are learnt, and the likelihood sees both: a mismatch of another form or a
-  /// disturbance of another shape than its own looks to it like two faults.
+  /// Decides if errors of the model are learnt and the likelihood sees both: a mismatch of another form, or a
+  /// disturbance of another shape, than those that it knows looks to it like two faults.
   FaultSource both_or_one(const AssessedLoop& loop, const Assessment& posterior, FaultSource tested,
                           Eigen::Index cv) const {
     if (tested == FaultSource::mpm)
@@ -262,7 +266,7 @@ class Mpmbench final : public AssessmentMethod {
     return shows_mismatch(loop, cv) ? FaultSource::mpm_ud : FaultSource::ud;
   }
 
-  /// Is there a mismatch in the CV even beside a disturbance of any shape?
+  /// Whether there is a mismatch in the CV even beside a disturbance of any shape.
   bool shows_mismatch(const AssessedLoop& loop, Eigen::Index cv) const {
     const std::shared_ptr<const AssessedLoop> corrected = learnt_->corrected(loop);
     const AssessedLoop& whole = corrected->from_start();
@@ -271,7 +275,7 @@ class Mpmbench final : public AssessmentMethod {
     return likely_mismatch(study_, whole, errors, cv).gain > kSureMismatch;
   }
 
-  /// Beside those of the other CVs in `whole`.
+  /// The errors of the CV, beside those of the other CVs in `whole`.
   CvErrors cv_errors(const AssessedLoop& loop, const AssessedLoop& whole, Eigen::Index cv) const {
     const Eigen::MatrixXd series = learnt_->series(loop, cv);
     std::vector<Eigen::Index> samples;
@@ -288,8 +292,9 @@ class Mpmbench final : public AssessmentMethod {
     return all;
   }
 
-  /// The likelihood sees both, as it does where one fault alone is not of its family: a mismatch that begins
-  /// later leaves what a disturbance explains, another shape of a disturbance what a mismatch does.
+  /// Decides if the likelihood sees both, as it also does if a single fault is not one that it knows: a
+  /// mismatch that begins later leaves a part that a disturbance explains, and a disturbance of another shape
+  /// leaves a part that a mismatch explains.
   static FaultSource both_or_one(FaultSource tested, double log10_p, double log10_p_noise) {
     if (tested == FaultSource::mpm)
       return log10_p < kMostlyMismatch * log10_p_noise ? FaultSource::mpm : FaultSource::mpm_ud;

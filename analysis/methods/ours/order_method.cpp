@@ -18,7 +18,7 @@ namespace {
 
 struct OrderOptions {
   ErrorRegressionOptions regression;
-  bool disturbances = true;  ///< an error that is coloured in another way than in the benchmark is flagged
+  bool disturbances = true;  ///< an error with another colour than in the benchmark is flagged
 
   bool operator==(const OrderOptions&) const = default;
 };
@@ -32,21 +32,21 @@ OptionKeys keys(OrderOptions& options) {
   return all;
 }
 
-/// The order from the MVs to the simulation errors: do past moves of the MVs help to predict e_i = y_i -
-/// y_sim,i once its own past is known? Where they do not (order 0) the model is right, and what e has of
-/// colour is a disturbance's; where they do, the model is wrong. Pannocchia, De Luca and Bottai (2014,
-/// Asian J. Control 16, 995-1005) prove this of the order of a minimal realisation, which they find by
-/// closed-loop subspace identification. Of their paper the abstract was read; the tests here are our own.
+/// Tests the order from the MVs to the simulation errors: whether past moves of the MVs help to predict e_i =
+/// y_i - y_sim,i once its own past is known. If they do not (order 0), the model is right, and the colour of
+/// e comes from a disturbance. If they do, the model is wrong. Pannocchia, De Luca and Bottai (2014, Asian J.
+/// Control 16, 995-1005) prove this for the order of a minimal realisation, which they find by closed-loop
+/// subspace identification. We have read the abstract of their paper only; the tests here are our own.
 ///
 ///   mismatch:     prewhitened_test() of e_i on the filtered MVs; a channel by the partial F of its MV
 ///   disturbance:  log_p_same_autoregression() of e_i and of the e_i of the benchmark: another colour than
 ///                 noise has, or another mean; not another variance, which noise may have
 ///
-/// Where the benchmark corrects the model, what the correction cannot express follows the MVs in the
-/// benchmark, too: the test is of what they explain beyond that (new_in()).
+/// If the benchmark corrects the model, what the correction cannot express follows the MVs in the benchmark,
+/// too. Then the test is of what the MVs explain beyond that (new_in()).
 ///
 /// Each p-value is that of one of 2 ny tests (ny without a benchmark). A CV whose error follows the MVs has
-/// the source mpm, another flagged one ud.
+/// the source mpm, any other flagged CV ud.
 class Order final : public AssessmentMethod {
  public:
   explicit Order(const AssessmentContext& context) : options_(context.study.assessment.of<OrderOptions>()) {
@@ -111,7 +111,8 @@ class Order final : public AssessmentMethod {
           {"log10_p_channel", test.groups[mv].log_p / std::numbers::ln10, cv, static_cast<Eigen::Index>(mv)});
   }
 
-  /// ln p of the noise of this CV being that of the benchmark; none without one, or with too few samples.
+  /// ln p of the hypothesis that this CV has the noise of the benchmark; none without a benchmark, or with
+  /// too few samples.
   std::optional<double> log_p_of_noise(const Eigen::VectorXd& e, Eigen::Index cv, Eigen::Index order) const {
     if (!benchmark_)
       return std::nullopt;
@@ -124,7 +125,8 @@ class Order final : public AssessmentMethod {
     return log_p_same_autoregression(fit_autoregression(e, common), fit_autoregression(good, common));
   }
 
-  /// The MV without which most is lost, and each further one without which something is (Holm over the MVs).
+  /// Names the channel of the MV without which most is lost, and of each further MV without which something
+  /// is lost (Holm over the MVs).
   void add_channels(Eigen::Index cv, const std::vector<FTest>& groups, Assessment& assessment) const {
     std::vector<double> p;
     for (const FTest& group : groups)
@@ -138,7 +140,7 @@ class Order final : public AssessmentMethod {
   }
 
   const OrderOptions& options_;
-  ErrorRegressions usual_;                    ///< of a benchmark that has corrected the model; or empty
+  ErrorRegressions usual_;  ///< regressions of a benchmark that has corrected the model, or empty
   std::optional<Eigen::MatrixXd> benchmark_;  ///< errors of the benchmark; none: no disturbance is flagged
 };
 

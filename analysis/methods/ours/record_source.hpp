@@ -25,7 +25,7 @@ inline constexpr auto kWords<RecordSource> = word_list("nothing", "mismatch", "d
 
 inline constexpr std::size_t kRecordSources = kWords<RecordSource>.size();
 
-/// All but nothing.
+/// All sources except `nothing`.
 inline constexpr std::array kFaultSources{
     RecordSource::mismatch, RecordSource::disturbance, RecordSource::both,   RecordSource::sensor,
     RecordSource::valve,    RecordSource::data,        RecordSource::unknown};

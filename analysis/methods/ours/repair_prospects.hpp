@@ -18,10 +18,10 @@
 
 namespace mpm {
 
-/// Of the method `adequacy`, and of whoever ranks repairs.
+/// Options of the method `adequacy`, and of all code that ranks repairs.
 struct AdequacyOptions {
   double worth = 0.1;        ///< gain of a repair below which the model is adequate
-  double probability = 0.5;  ///< of a gain above it, from which on it is not
+  double probability = 0.5;  ///< of a gain above `worth`, from which on the model is not adequate
   double deviation = 0.3;    ///< of the relative errors of the model before the record is seen
   int draws = 8;
   int channels = 4;
@@ -42,11 +42,11 @@ struct RepairedChannel {
 struct RepairProspect {
   RepairedChannel repair;
   std::vector<double> gains;  ///< ascending, of the plants on which all loops run to their end; may be empty
-  /// ny: mean variance of a CV on these plants after the repair over that before it; with samples that count
-  /// its counted_costs().
+  /// ny: mean variance of a CV on these plants after the repair over that before it; if only some samples
+  /// count, its counted_costs() stand for the variance.
   Eigen::VectorXd variance_ratio = {};
 
-  /// Expected; NaN without a plant.
+  /// The expected gain; NaN without a plant.
   double gain() const;
   /// Share of the plants on which the gain is larger; NaN without a plant.
   double probability_above(double worth) const;
@@ -69,9 +69,9 @@ class RepairProspects {
   /// `study` must outlive it, and has the options. `for_each` runs the loops, those of each plant together.
   RepairProspects(const Study& study, const OperatingPoint& point, ForEachWithSolver for_each);
 
-  /// Of the channels whose errors explain most of their CV, in this order, and of the given one; none where a
-  /// CV has too few samples. Costs 1 + channels closed loops a draw. `counted`: the samples at which loops
-  /// cost something; empty: all.
+  /// The prospects of the given channel and of those whose errors explain most of their CV, in this order;
+  /// none if a CV has too few samples. Simulates 1 + channels closed loops for each draw. `counted` marks the
+  /// samples at which loops cost something; empty: all.
   std::optional<std::vector<RepairProspect>> of(const AssessedLoop& loop,
                                                 const std::optional<RepairedChannel>& given = {},
                                                 const std::vector<bool>& counted = {}) const;
@@ -89,9 +89,9 @@ class RepairProspects {
                                                const std::vector<RepairProspect>& prospects,
                                                const QpSolverFactory& factory) const;
   Eigen::RowVectorXd response(const Seen& seen, const TransferFunction& channel, Eigen::Index input) const;
-  /// Does the loop of a plant resemble the record? Only asked where samples are counted, as in the record of
-  /// a plant: there the controller of the study may be unstable on a plant on which that of the record is
-  /// not.
+  /// Whether the loop of a drawn plant resembles the record. This is asked only if samples are counted, as in
+  /// the record of a plant: there the controller of the study may be unstable on a plant on which that of the
+  /// record is stable.
   bool may_have_made(const Seen& seen, const Outcome& now) const;
   std::optional<Outcome> outcome(const TransferMatrix& model, const TransferMatrix& plant, const Seen& seen,
                                  const Eigen::MatrixXd& disturbance, const QpSolverFactory& factory) const;
@@ -102,7 +102,7 @@ class RepairProspects {
   ForEachWithSolver for_each_;
 };
 
-/// By expected gain, the largest first; those that run on no plant last.
+/// Sorts by expected gain, the largest first; those that ran on no plant come last.
 std::vector<RepairProspect> ranked(std::vector<RepairProspect> prospects);
 
 /// The prospect of this channel; null if it ran on no plant.

@@ -22,7 +22,7 @@ constexpr Eigen::Index kMedianReach = 4;  ///< samples to either side of which a
 constexpr double kNoisier = 3.0;          ///< noise of an MD over that of the benchmark
 constexpr double kProof = 15.0;           ///< log L that the noise of an MD brings
 constexpr double kMostDeviations = 4.0;   ///< of noise from its median
-constexpr double kLeastAmplitude = 0.1;   ///< of this noise in y_sim, 1 of all of it
+constexpr double kLeastAmplitude = 0.1;   ///< part of this noise that y_sim must have; 1: all of it
 
 /// The onset from which on `gain` is largest, and this gain.
 struct BestOnset {
@@ -67,12 +67,13 @@ Eigen::RowVectorXd drift_from(Eigen::Index onset, Eigen::Index samples) {
   return h;
 }
 
-/// By how much the SSE falls where h has its best size.
+/// By how much the SSE falls if h has its best size.
 double sse_gain(const WhitenedErrors::Amplitude& amplitude) {
   return amplitude.squares > 0.0 ? amplitude.product * amplitude.product / amplitude.squares : 0.0;
 }
 
-/// d less its median over the samples about each, as far as noise of this deviation goes: a pulse is none.
+/// d less its median over the samples about each one, cut to what noise of this deviation can be: a pulse is
+/// not noise.
 Eigen::RowVectorXd fast_part(const Eigen::RowVectorXd& d, double deviation) {
   Eigen::RowVectorXd fast(d.size());
   for (Eigen::Index k = 0; k < d.size(); ++k) {
@@ -84,7 +85,7 @@ Eigen::RowVectorXd fast_part(const Eigen::RowVectorXd& d, double deviation) {
   return fast;
 }
 
-/// The responses of all CVs to what the measurement of an MD adds to it.
+/// The responses of all CVs to what the measurement of an MD adds to the MD.
 class MdResponses {
  public:
   MdResponses(const std::vector<ModelErrors>& models, const std::vector<WhitenedErrors>& errors,
@@ -99,7 +100,7 @@ class MdResponses {
     }
   }
 
-  /// Of the CVs that it moves.
+  /// The number of samples of the CVs that the MD moves.
   double samples() const { return samples_; }
 
   std::vector<Eigen::RowVectorXd> to(const Eigen::RowVectorXd& x) const {

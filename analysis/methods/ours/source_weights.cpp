@@ -31,9 +31,9 @@ FaultSource source_in(const Assessment& likelihood, Eigen::Index cv) {
   return best;
 }
 
-/// The posterior of `likelihood` as its list of faults has it, from that of each CV: the CVs are independent
-/// of each other. The probabilities that it states of the loop are those of the loops of the suites, where a
-/// mismatch beside a disturbance is rare. In a plant it is not.
+/// The posterior of `likelihood` over its list of faults, from that of each CV: the CVs are independent of
+/// each other. The probabilities that it states for the loop are not used: they are those of loops of the
+/// suites, in which a mismatch beside a disturbance is rare. In a plant it is not.
 OfSources posterior_of(const Assessment& likelihood) {
   double healthy = 1.0, neither = 1.0, no_mismatch = 1.0, no_disturbance = 1.0;
   for (Eigen::Index cv = 0; cv < std::ssize(likelihood.cvs); ++cv) {
@@ -64,7 +64,7 @@ RecordSource largest(const OfSources& weights) {
   return best;
 }
 
-/// A drift, by either of its causes, has the weight of the sensor.
+/// The weights with a drift counted as the sensor's, whichever of its causes it has.
 OfSources by_cause(const SourceWeights& weights) {
   OfSources of = weights.of;
   of[RecordSource::sensor] += weights.drift;
@@ -147,8 +147,8 @@ OfSources source_weights(const Assessment& likelihood, const Assessment& said) {
 
 SourceWeights with_comparison(const OfSources& weights, const FaultLikelihoods& found) {
   constexpr double kPrior = 0.1;
-  // A source that the likelihood rules out keeps this probability: it takes the noise for an autoregression
-  // of order 1 that never changes. Chosen on the records under the seeds 83 and 84
+  // A source that the likelihood rules out keeps this probability, since the likelihood takes the noise for
+  // an autoregression of order 1 that never changes. Chosen on the records under the seeds 83 and 84
   // (tests/reliability/records.py).
   constexpr double kDoubt = 0.01;
   OfSources all;
@@ -165,7 +165,7 @@ SourceWeights with_comparison(const OfSources& weights, const FaultLikelihoods& 
   all[RecordSource::disturbance] = std::max(disturbance / sum, kDoubt) * share(found.disturbance);
   all[RecordSource::unknown] = unknown / sum * share(std::max(found.mismatch, found.disturbance));
   all[RecordSource::valve] = kPrior * share(found.valve);
-  all[RecordSource::sensor] = 2.0 * kPrior * share(found.sensor);  // by its two causes
+  all[RecordSource::sensor] = 2.0 * kPrior * share(found.sensor);  // for its two causes
   all[RecordSource::data] = kPrior * share(found.data);
   return with_drift_of_both(all);
 }

@@ -15,46 +15,46 @@
 
 namespace mpm {
 
-/// What a method names, as the sources of a record have it.
+/// The source of a record that a method means by what it names.
 RecordSource record_source(FaultSource source, ToldSource told);
-/// The same the other way, as CvAssessment::source and about.
+/// The reverse: CvAssessment::source and about for a source of a record.
 std::pair<FaultSource, ToldSource> told_source(RecordSource source);
 
-/// The posterior of `likelihood`. Where `said` has a source for its worst CV, another one than the most
-/// probable one there, this and the most probable one of the loop change places: it has asked more. Where it
-/// leaves open whether it is a mismatch or a disturbance, both are as probable.
+/// The posterior of `likelihood`. If `said` names a source for its worst CV that is not the most probable one
+/// there, this source and the most probable one of the loop change places, since `said` has asked more. If
+/// `said` leaves open whether it is a mismatch or a disturbance, both are equally probable.
 OfSources source_weights(const Assessment& likelihood, const Assessment& said);
 
-/// Weights of the sources, and what they have of a CV that drifts.
+/// Weights of the sources, and the part of them that belongs to a CV that drifts.
 struct SourceWeights {
   OfSources of = {};
-  /// Part of the weights of sensor and of disturbance each: in a closed loop a sensor that drifts and a
-  /// disturbance on its CV that grows as fast look the same.
+  /// This part is in the weight of the sensor and in that of the disturbance: in a closed loop a sensor that
+  /// drifts and a disturbance on its CV that grows as fast look the same.
   double drift = 0.0;
 };
 
-/// The weights where further hypotheses count, each by its likelihood: mismatch and both, and disturbance, as
-/// probable before as `weights` has them, at least 1 in 100; valve, drift and data a tenth as probable, a
-/// drift by either of its causes.
+/// The weights if further hypotheses count, each by its likelihood. Beforehand a mismatch, alone or with a
+/// disturbance, and a disturbance alone are as probable as in `weights`, but at least 1 in 100. Valve, drift
+/// and data are a tenth as probable, a drift for each of its causes.
 SourceWeights with_comparison(const OfSources& weights, const FaultLikelihoods& found);
 
-/// The source with the largest weight, a drift by both of its causes together as that of the sensor; unknown
-/// where none has a weight.
+/// The source with the largest weight. A drift counts as the sensor's, both of its causes together. Unknown
+/// if no source has a weight.
 RecordSource heaviest(const SourceWeights& weights);
 
-/// The source that weights name: the heaviest one, and of a drift the heavier one of its causes.
+/// The source that the weights name: the heaviest one or, for a drift, the heavier one of its causes.
 struct NamedSource {
   RecordSource source = RecordSource::unknown;
   bool drifts = false;  ///< by either of its causes
 };
 NamedSource named_source(const SourceWeights& weights);
 
-/// What the inputs tell of the errors beside the heaviest source (FaultComparison::dependence_beside()) is r
-/// times what they tell in loops without a mismatch: with r > 1, 1 - 1 / r^2 of its weight goes to none of
-/// these.
+/// Moves weight from the heaviest source to "none of these". r is what the inputs tell about the errors
+/// beside this source (FaultComparison::dependence_beside()), over what they tell in loops without a
+/// mismatch. If r > 1, the part 1 - 1 / r^2 of the weight is moved.
 SourceWeights with_none_of_these(SourceWeights weights, double r);
 
-/// The numbers by which a method says weights, and what is most likely of each source:
+/// The numbers by which a method states the weights, and the most likely fault of each source:
 ///
 /// | number                                      | meaning                                               |
 /// |---------------------------------------------|-------------------------------------------------------|
@@ -69,7 +69,8 @@ std::vector<AssessmentNumberInfo> source_weight_numbers();
 void add_weights(const SourceWeights& weights, Assessment& assessment);
 void add_likeliest(const FaultLikelihoods& found, Assessment& assessment);
 
-/// What an answer says of them; none where it has asked nothing of noise of any shape.
+/// The weights and the likeliest faults that an answer states; none if it did not compare sources beside
+/// noise of any shape.
 SourceWeights stated_weights(const AssessmentRecord& said);
 std::optional<FaultLikelihoods> stated_likeliest(const AssessmentRecord& said);
 

@@ -16,12 +16,12 @@ namespace mpm {
 namespace {
 
 // Chosen on the standard suite under the development seed 7. The likelihood of a valve that jumps is narrow
-// in S, so that the grid is close. What it gains by being the best of so many stays below the price of its
-// parameters: in 72 loops without a fault, 10 of log L, and 3 less than this price.
-constexpr double kLargestBand = 1.2;                   ///< S or f_S, over what the MV moves
+// in S, so the grid is fine. What a valve gains by being the best of so many stays below the price of its
+// parameters: in 72 loops without a fault it was 10 of log L, which is 3 less than this price.
+constexpr double kLargestBand = 1.2;                   ///< S or f_S, over the range of the MV
 constexpr double kCloseStep = 1.072, kWideStep = 1.2;  ///< from a size to the next: above kCloseBand, below
 constexpr double kCloseBand = 0.015, kSmallestBand = 0.001;
-constexpr double kFaintMove = 0.1;  ///< of the CV that moves most, at rest and in deviations of the noise
+constexpr double kFaintMove = 0.1;  ///< static move of the CV that moves most, in deviations of the noise
 constexpr std::array kJumps{0.0, 0.25, 0.5, 0.75, 1.0};  ///< J/S, or 1 - f_D/f_S
 constexpr std::size_t kMostSearched = 6;
 constexpr double kLastValveOnset = 0.85;  ///< of the record
@@ -29,7 +29,8 @@ constexpr double kFinestShare = 0.04;     ///< of a step of the search
 constexpr double kValveParameters = 4.0;
 constexpr double kValveFarBehind = 40.0;  ///< of log L, from the best start alone
 
-/// log S over what the MV moves, the jump over S, the onset over the record, and where the stem stands then.
+/// log of S over the range of the MV, the jump over S, the onset over the record, and the position of the
+/// stem at the onset.
 using ValveNumbers = Eigen::Vector4d;
 
 struct TriedValve {
@@ -37,7 +38,7 @@ struct TriedValve {
   ValveNumbers numbers;
 };
 
-/// The valve of one MV.
+/// The search for the valve of one MV.
 class ValveSearch {
  public:
   ValveSearch(const std::vector<ModelErrors>& models, const std::vector<WhitenedErrors>& errors,
@@ -56,7 +57,8 @@ class ValveSearch {
     }
   }
 
-  /// What the valve that is found from the best of the grid brings to log L; -infinity without any.
+  /// Searches from the best valve of the grid. Returns what the valve found adds to log L; -infinity if there
+  /// is none.
   double first_look() {
     if (samples_ == 0.0 || !(range_ > 0.0))
       return -kInfinity;
@@ -78,8 +80,8 @@ class ValveSearch {
  private:
   inline static const ValveNumbers kSteps{0.1, 0.25, 0.1, 0.5};
 
-  /// Over what the MV moves, down to what no CV shows: the response to a small one is small, too, so that the
-  /// likelihood is wider in log S.
+  /// Sizes of the band over the range of the MV, down to those that no CV shows. Small sizes are further
+  /// apart: the response to them is small, too, so that the likelihood is wider in log S.
   std::vector<double> band_sizes() const {
     const double least = std::max(kSmallestBand, std::min(kCloseBand, kFaintMove / (most_moved_ * range_)));
     std::vector<double> sizes;
@@ -88,14 +90,14 @@ class ValveSearch {
     return sizes;
   }
 
-  /// Those that gain most, each with its best onset, best first.
+  /// The valves that gain most, each with its best onset, best first.
   std::vector<TriedValve> best_of_grid() const {
     std::vector<std::pair<double, TriedValve>> all;
     const std::vector<double> sizes = band_sizes();
     for (const bool has_friction : {false, true})
       for (const double jump : kJumps) {
         if (has_friction && jump == 0.0)
-          continue;  // a deadband, with both
+          continue;  // both sorts of valve are a deadband then
         std::vector<TriedValve> valves;
         for (const double size : sizes)
           valves.push_back({has_friction, {std::log(size), jump, 0.0, 0.0}});
@@ -108,7 +110,7 @@ class ValveSearch {
     return first;
   }
 
-  /// The one of some valves that gains most, with the onset from which on its samples do, and this gain.
+  /// The valve that gains most, with the onset from which on its samples gain most, and this gain.
   std::pair<double, TriedValve> best_from_some_onset(const std::vector<TriedValve>& valves) const {
     const auto count = static_cast<Eigen::Index>(valves.size());
     Eigen::MatrixXd x(count, u_.size()), h = x, gains = Eigen::MatrixXd::Zero(count, u_.size());
@@ -165,7 +167,7 @@ class ValveSearch {
     }
   }
 
-  /// What the valve does not do of what is asked for.
+  /// The position of the valve less what is asked for.
   Eigen::RowVectorXd off(const TriedValve& valve) const {
     const double size = range_ * std::exp(valve.numbers(0)), jump = valve.numbers(1) * size;
     const auto onset = static_cast<Eigen::Index>(valve.numbers(2) * static_cast<double>(u_.size()));
@@ -186,7 +188,7 @@ class ValveSearch {
     return channel_response(*channels_[cv], x, 0.0) / deviations_[cv];
   }
 
-  /// Of the CVs that the MV moves.
+  /// log L of the CVs that the MV moves.
   double log_likelihood(const Eigen::RowVectorXd& x) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < errors_.size(); ++i)
@@ -198,7 +200,8 @@ class ValveSearch {
   const std::vector<WhitenedErrors>& errors_;
   Eigen::RowVectorXd u_;
   double initial_, range_, samples_ = 0.0;
-  double most_moved_ = 0.0;  ///< of the CV that moves most, in deviations of its noise for a unit of the MV
+  /// Move of the CV that moves most, in deviations of its noise for a unit of the MV.
+  double most_moved_ = 0.0;
   std::vector<std::optional<DiscreteChannel>> channels_;
   std::vector<double> deviations_;
   std::vector<TriedValve> starts_;  ///< from the grid

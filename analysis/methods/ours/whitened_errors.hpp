@@ -32,7 +32,7 @@ class WhitenedErrors {
   };
   Amplitude amplitude(const Eigen::Ref<const Eigen::RowVectorXd>& h) const;
 
-  /// By how much each row of `h` lowers the square of each whitened sample, Z left out; of the size of `h`.
+  /// By how much each row of `h` lowers the square of each whitened sample, without Z; of the shape of `h`.
   Eigen::MatrixXd gains(const Eigen::Ref<const Eigen::MatrixXd>& h) const;
 
  private:
