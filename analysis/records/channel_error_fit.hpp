@@ -71,7 +71,7 @@ struct NoiseHabit {
 /// The habits of all CVs in a period.
 struct ModelHabit {
   Eigen::Index first = 0, end = 0;               ///< samples of the period in its record
-  std::vector<std::optional<NoiseHabit>> noise;  ///< of each CV; none where the period has too few samples
+  std::vector<std::optional<NoiseHabit>> noise;  ///< of each CV; none if the period has too few samples
 };
 
 /// Fits of the CVs of a study whose channels may be off by the relative size `delta`; 0: p = 0.

@@ -38,7 +38,7 @@ Eigen::MatrixXd measured(const AssessedLoop& loop, const Eigen::MatrixXd& y) {
   return all;
 }
 
-/// The MVs that the controller would have chosen; empty where it fails, with the reason in `failure`.
+/// The MVs that the controller would have chosen; empty if it fails, with the reason in `failure`.
 Eigen::MatrixXd chosen(const RecordFrame& frame, const PlantRecord& record, const AssessedLoop& loop,
                        std::string& failure) {
   const Study& study = frame.as_kept;

@@ -35,7 +35,7 @@ struct RecordFrame {
   ForEachWithSolver for_each;    ///< with this factory or one that gives the same answers
   GapFill fill = GapFill::none;  ///< how gaps are filled for those methods
   Eigen::Index unjudged = 0;     ///< samples at the start that only fill the memory of the model
-  Eigen::Index settling = 0;     ///< samples after a gap of the inputs that fill it again
+  Eigen::Index settling = 0;     ///< samples after a gap of the inputs that only fill this memory again
   double model_error = 0.0;      ///< errors that the model may have, a standard deviation; 0: it is exact
   bool finds_benchmark = false;  ///< data.benchmark = "found"
   Eigen::MatrixXd y0 = {};       ///< ny x N, the nominal loop; empty: no cost is asked for

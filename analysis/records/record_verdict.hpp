@@ -39,7 +39,7 @@ enum class ActionKind : std::int8_t {
   column,       ///< look at the columns of the record
   controller,   ///< look at the controller of the study, which is not the one that ran
   limit,        ///< look at limits, tuning and the operating point
-  disturbance,  ///< look for what disturbs a CV
+  disturbance,  ///< look for the cause that disturbs a CV
   test,         ///< move the MV of a channel, or all MVs
   wait,
 };
@@ -122,7 +122,7 @@ struct VerdictEvidence {
   std::optional<TrialCounts> trials = {};   ///< none: there are no simulated records
   std::optional<FaultOnset> onset = {};
   std::vector<CvCost> costs = {};  ///< since the onset if there is one
-  /// Posterior of the sources, given that there is a fault; need not sum to 1. A drift is that of
+  /// Posterior of the sources, given that there is a fault; need not sum to 1. If something drifts, it is
   /// `sensor_cv`.
   SourceWeights weights = {};
   bool jumps = false;  ///< the sensor of `sensor_cv` jumps

@@ -29,7 +29,7 @@ bool is_without_fault(const ExperimentRecord& record) {
 template <class See>
 void each_beside_threshold(const RecordRange& records, std::size_t method, const TrialFindings& found,
                            See see) {
-  std::size_t place = 0;  // among those without a fault
+  std::size_t place = 0;  // among the records without a fault
   records.each([&](const ExperimentRecord& record) {
     if (!has_verdict(record, method))
       return;

@@ -228,8 +228,8 @@ class ChannelSearch {
         .row(0);
   }
 
-  /// Both sides behind A(q), about their means, and without what is unknown. Each becomes w - W (I + W'W)^-1
-  /// W'w with -(I + W'W)^-1 W'w below it, so that products are those under I + W W'.
+  /// Both sides behind A(q), about their means, and without what is unknown. With c = (I + W'W)^-1 W'w each
+  /// becomes w - W c with -c below it, so that products are those under I + W W'.
   Whitened whitened(const Point& point) const {
     Eigen::MatrixXd both(u_.size(), 2);
     both << target(point), part(point).cwiseProduct(response(point));

@@ -22,7 +22,7 @@ struct ChannelFit {
   FittedNumber time_factor;      ///< of its time constants
   FittedNumber dead_time_shift;  ///< added to its dead time, time unit of the plant
   Eigen::Index noise_order;      ///< order of the autoregression of the residual of the channel
-  double explained;              ///< share of the whitened error of the model that the fit takes away, 0 to 1
+  double explained;              ///< share of the whitened error of the model that the fit removes, 0 to 1
   TransferFunction channel;      ///< with the values above
 };
 

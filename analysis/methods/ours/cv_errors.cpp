@@ -14,7 +14,7 @@ namespace mpm {
 namespace {
 
 /// Largest lags of the errors of other CVs beside those of a CV, and of the errors of all CVs in
-/// input_dependence(). They were chosen, like the other constants of the noise, on records of others' plants
+/// input_dependence(). Like the other constants of the noise, they were chosen on records of others' plants
 /// under the seeds 83 and 84 (tests/reliability/records.py).
 constexpr Eigen::Index kOtherLags = 6, kOwnLags = 12;
 

@@ -22,8 +22,8 @@ struct Part {
   Eigen::Index first, count;
 };
 
-/// sum_k A(k - l)' B(k - m), 0 <= l, m <= kErrorOrder, over those samples k of a part of the signals A (n x
-/// p) and B (n x q) that have a past of this length. From these the products of signals that an
+/// sum_k A(k - l)' B(k - m), 0 <= l, m <= kErrorOrder, for signals A (n x p) and B (n x q), over those
+/// samples k of a part that have a past of this length. From these the products of signals that an
 /// autoregression a whitens follow without the signals. Only the sum of (l, m) and (m, l) is kept, since both
 /// count alike.
 class LaggedProducts {

@@ -521,8 +521,8 @@ class FaultPosterior final : public AssessmentMethod {
   /// seeds 8 and 11.
   static constexpr double kAnyShapeShare = 0.3;
   static constexpr double kSuspect = 1e-3;  ///< probability from which a CV is looked at more closely
-  /// A sensor tells of an error if the log of its likelihood exceeds that of all else that may be wrong with
-  /// its CV by this; not tuned.
+  /// A CV counts as showing an error of its sensor if the log likelihood of this error exceeds that of all
+  /// else that may be wrong with the CV by so much; not tuned.
   static constexpr double kTelling = 5.0;
   /// log of the density of a sample of a stuck sensor, in deviations of the noise: it is known to a twentieth
   /// of one.

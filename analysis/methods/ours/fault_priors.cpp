@@ -190,8 +190,8 @@ double freedom_of(const Distribution& factor) {
   return variance > 0.0 ? 2.0 / variance : kInfinity;
 }
 
-/// The weight of a fault of one of `count` inputs. A fault of some input is as probable as all faults of CVs
-/// times `share`.
+/// The weight of a fault of one of `count` inputs. A fault of some input is `share` times as probable as all
+/// faults of CVs together.
 double input_weight(double share, double fault_probability, Eigen::Index count) {
   return count == 0 ? 0.0
                     : share * fault_probability / (1.0 - fault_probability) / static_cast<double>(count);

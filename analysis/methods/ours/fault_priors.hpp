@@ -64,7 +64,7 @@ struct FaultPriorSet {
   /// Weights against 1 for nothing, with wide priors. `input` is that of a disturbance on each MV, and of a
   /// sticking valve of each MV; `md` is that of a wrong measurement of each MD.
   double input = 0.0, md = 0.0;
-  /// Only one CV has a fault; otherwise each CV may have one, independently of the others.
+  /// Whether only one CV has a fault. Otherwise each CV may have one, independently of the others.
   bool one_fault = false;
   /// nu of the scaled inverse chi-square distribution of the variance of the noise about the known one;
   /// infinity: it is known.

@@ -110,8 +110,8 @@ double p_of_none(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance)
   return freedom > 0 && std::isfinite(chi_squared) ? chi_squared_upper_tail(chi_squared, freedom) : 1.0;
 }
 
-/// The mean of a normal vector that is nowhere below `least`: the element that lies lowest below is held
-/// there, one after the other.
+/// The mean of a normal vector that is nowhere below `least`: the elements that lie below are held there one
+/// after the other, the lowest first.
 Eigen::VectorXd bounded_mean(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                              const Eigen::VectorXd& least) {
   std::vector<Eigen::Index> held;

@@ -53,9 +53,9 @@ Eigen::MatrixXd model_inputs(const AssessedLoop& loop);
 /// record to record.
 class ModelErrors {
  public:
-  /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample. `inputs` (nu + nd x
-  /// N), with `initial` (nu + nd) before them, are what moved the model. The noise is the `known` one, or it
-  /// is learnt with a deviation of `least` or more. The errors are those of a model in which the dead time of
+  /// `e` (N) are the simulation errors of the benchmark, NaN where there is no sample. The model was moved by
+  /// `inputs` (nu + nd x N), and by `initial` (nu + nd) before them. The noise is the `known` one, or it is
+  /// learnt with a deviation of `least` or more. The errors are those of a model in which the dead time of
   /// every channel is longer by `late` >= 0, in the time unit of the plant. Throws InputError for fewer than
   /// kFewestNoiseSamples samples.
   ModelErrors(const Study& study, Eigen::Index cv, const ModelErrorPrior& prior,
@@ -160,8 +160,8 @@ class LearntModel final : public ModelCorrection {
   /// errors_in_window() with the rows of the CV at the samples of the model.
   Eigen::RowVectorXd errors(const AssessedLoop& loop, Eigen::Index cv) const;
   /// errors() of the CV in the record less their correction, and below them the directions Z of what is still
-  /// unknown about the model, without those that wander, (1 + q) x N in CV units. Row 0 is Z' z plus noise, z
-  /// ~ N(0, I).
+  /// unknown about the model, without those that wander, (1 + q) x N in CV units. Row 0 is Z' z and noise,
+  /// with z ~ N(0, I).
   Eigen::MatrixXd series(const AssessedLoop& loop, Eigen::Index cv) const;
   /// The first CV whose benchmark rejects an exact model; none if no benchmark does. All do if the clock of
   /// the record differs.
@@ -195,7 +195,7 @@ class LearntModel final : public ModelCorrection {
 /// some samples are shifted back.
 Eigen::RowVectorXd errors_in_window(const AssessedLoop& loop, Eigen::Index cv, Eigen::Index early = 0);
 
-/// The deviation below which the simulation errors of a CV are rounding of its outputs.
+/// The deviation below which the simulation errors of a CV are only the rounding of its outputs.
 double least_noise(const Eigen::Ref<const Eigen::RowVectorXd>& y_sim);
 
 }  // namespace mpm

@@ -255,8 +255,8 @@ class Mpmbench final : public AssessmentMethod {
     return contradiction ? FaultSource::none : probable;
   }
 
-  /// Decides if errors of the model are learnt and the likelihood sees both: a mismatch of another form, or a
-  /// disturbance of another shape, than those that it knows looks to it like two faults.
+  /// Decides if errors of the model are learnt and the likelihood sees both: a mismatch or a disturbance of a
+  /// shape that the likelihood does not know looks to it like two faults.
   FaultSource both_or_one(const AssessedLoop& loop, const Assessment& posterior, FaultSource tested,
                           Eigen::Index cv) const {
     if (tested == FaultSource::mpm)

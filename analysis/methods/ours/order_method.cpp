@@ -32,11 +32,12 @@ OptionKeys keys(OrderOptions& options) {
   return all;
 }
 
-/// Tests the order from the MVs to the simulation errors: whether past moves of the MVs help to predict e_i =
-/// y_i - y_sim,i once its own past is known. If they do not (order 0), the model is right, and the colour of
-/// e comes from a disturbance. If they do, the model is wrong. Pannocchia, De Luca and Bottai (2014, Asian J.
-/// Control 16, 995-1005) prove this for the order of a minimal realisation, which they find by closed-loop
-/// subspace identification. We have read the abstract of their paper only; the tests here are our own.
+/// Tests the order from the MVs to the simulation errors e_i = y_i - y_sim,i: whether past moves of the MVs
+/// help to predict e_i once its own past is known. If they do not (order 0), the model is right, and the
+/// colour of e comes from a disturbance. If they do, the model is wrong. Pannocchia, De Luca and Bottai
+/// (2014, Asian J. Control 16, 995-1005) prove this for the order of a minimal realisation, which they find
+/// by closed-loop subspace identification. We have read the abstract of their paper only; the tests here are
+/// our own.
 ///
 ///   mismatch:     prewhitened_test() of e_i on the filtered MVs; a channel by the partial F of its MV
 ///   disturbance:  log_p_same_autoregression() of e_i and of the e_i of the benchmark: another colour than

@@ -22,9 +22,9 @@ namespace {
 constexpr std::uint64_t kDrawSeed = 43;
 /// Part of the mean square of a CV below which the error of a channel is not worth a simulation.
 constexpr double kFaintShare = 1e-3;
-/// If a CV costs more than this in the loop of a drawn plant, over its cost in the record, the plant did not
-/// make the record. It is above 1 because the controller of a record is not quite that of the study. Chosen
-/// on the records under the seeds 83 and 84 (tests/reliability/records.py).
+/// The largest ratio of the cost of a CV in the loop of a drawn plant to its cost in the record with which
+/// the plant may have made the record. It is above 1 because the controller of a record is not quite that of
+/// the study. Chosen on the records under the seeds 83 and 84 (tests/reliability/records.py).
 constexpr double kMostUnlike = 2.0;
 
 }  // namespace

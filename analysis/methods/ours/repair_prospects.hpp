@@ -43,7 +43,7 @@ struct RepairProspect {
   RepairedChannel repair;
   std::vector<double> gains;  ///< ascending, of the plants on which all loops run to their end; may be empty
   /// ny: mean variance of a CV on these plants after the repair over that before it; if only some samples
-  /// count, its counted_costs() stand for the variance.
+  /// count, its counted_costs() take the place of the variance.
   Eigen::VectorXd variance_ratio = {};
 
   /// The expected gain; NaN without a plant.
@@ -66,7 +66,8 @@ struct RepairProspect {
 /// do not count.
 class RepairProspects {
  public:
-  /// `study` must outlive it, and has the options. `for_each` runs the loops, those of each plant together.
+  /// `study`, which has the options, must outlive it. `for_each` runs the loops, those of each plant
+  /// together.
   RepairProspects(const Study& study, const OperatingPoint& point, ForEachWithSolver for_each);
 
   /// The prospects of the given channel and of those whose errors explain most of their CV, in this order;

@@ -23,8 +23,8 @@ namespace mpm {
 /// only a disturbance that wanders can be told from a sensor.
 ExplainedErrors best_sensor_error(const std::vector<WhitenedErrors>& errors, std::size_t cv);
 
-/// The error of the gain with which the MD is measured, in the place `input` of the model that explains the
-/// simulation errors of all CVs best, from some onset on,
+/// The gain error in the measurement of an MD that explains the simulation errors of all CVs best, from some
+/// onset on. The MD is in the place `input` of the model,
 ///
 ///   e_i = G0_ij x + Z_i' z_i + n_i,   x(k) = b d(k),
 ///

@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// The source of a record that a method means by what it names.
+/// The source of a record that corresponds to what a method names.
 RecordSource record_source(FaultSource source, ToldSource told);
 /// The reverse: CvAssessment::source and about for a source of a record.
 std::pair<FaultSource, ToldSource> told_source(RecordSource source);

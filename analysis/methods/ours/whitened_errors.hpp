@@ -37,7 +37,7 @@ class WhitenedErrors {
 
  private:
   Eigen::MatrixXd white_of(const Eigen::Ref<const Eigen::MatrixXd>& h) const;
-  /// a' b of what Z leaves of whitened rows.
+  /// a' b of two whitened rows, without what Z explains of them.
   double product_of(const Eigen::RowVectorXd& a, const Eigen::RowVectorXd& b) const;
 
   NoiseModels models_;
