@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kAtRest = 0.5;  // of a standard deviation
 
-/// Each row begins near `rest`, as it moves.
+/// Does each row begin near `rest`, compared with its own standard deviation?
 bool begins_at(const Eigen::VectorXd& rest, const Eigen::MatrixXd& signals) {
   const Eigen::VectorXd deviation = ((signals.colwise() - signals.rowwise().mean()).rowwise().squaredNorm() /
                                      static_cast<double>(signals.cols()))
@@ -32,7 +32,7 @@ bool begins_at(const Eigen::VectorXd& rest, const Eigen::MatrixXd& signals) {
   return ((signals.col(0) - rest).cwiseAbs().array() <= kAtRest * deviation.array()).all();
 }
 
-/// The rows of `recorded` that were recorded, and `otherwise` instead of the others.
+/// `recorded`, with the values of `otherwise` where it is NaN.
 Eigen::MatrixXd where_recorded(const Eigen::MatrixXd& recorded, const Eigen::MatrixXd& otherwise) {
   return recorded.array().isNaN().select(otherwise, recorded);
 }
@@ -42,14 +42,16 @@ double washout_pole(const Study& study) {
   return std::exp(-study.controller.sample_time / study.washout());
 }
 
-/// Of the first samples, over a part of the washout: less of their noise is then seen to die away.
+/// The mean of the first samples, over a part of the time constant of the washout, so that less of
+/// their noise shows as a decay.
 double washout_start(const Eigen::RowVectorXd& e, double washout_samples) {
   constexpr double kPart = 0.25;
   const auto count = std::min(e.size(), static_cast<Eigen::Index>(std::ceil(kPart * washout_samples)));
   return e.head(count).mean();
 }
 
-/// CVs that integrate behind their washout: `y_sim` is G0 (u, d), `seen` the same of assessed_model().
+/// Puts CVs that integrate behind their washout: `y_sim` is G0 (u, d), `seen` is the same for
+/// assessed_model().
 void wash_out(const Study& study, const Eigen::MatrixXd& y_sim, const Eigen::MatrixXd& seen,
               AssessedLoop& loop) {
   const double a = washout_pole(study);
@@ -67,17 +69,17 @@ void wash_out(const Study& study, const Eigen::MatrixXd& y_sim, const Eigen::Mat
   }
 }
 
-/// The signal after `samples` samples at its first value.
+/// The signal, preceded by `samples` samples at its first value.
 Eigen::MatrixXd after_rest(const Eigen::MatrixXd& signal, Eigen::Index samples) {
   Eigen::MatrixXd longer(signal.rows(), samples + signal.cols());
   longer << signal.col(0).replicate(1, samples), signal;
   return longer;
 }
 
-/// Who says when an analyser takes its samples: the study, or the changes of a record of a plant.
+/// What tells when an analyser takes its samples: the study, or the changes in the record of a plant.
 enum class FirstAnalysis { of_study, of_record };
 
-/// Of the CVs that have an analyser, the analyses at the samples at which they were taken.
+/// Replaces the rows of CVs that have an analyser by their analyses, at the samples at which they were taken.
 void take_analyses(const Study& study, FirstAnalysis first, Eigen::MatrixXd& y) {
   const std::vector<AnalyserTiming>& timings = study.controller.analysers;
   for (std::size_t i = 0; i < timings.size(); ++i) {
@@ -88,10 +90,10 @@ void take_analyses(const Study& study, FirstAnalysis first, Eigen::MatrixXd& y) 
   }
 }
 
-/// `y` and `y_sim` at each sample as an analyser shows them that says what it found `delay` samples after
-/// taking its sample. Before the first analysis of a record it is the first one that is shown. Where the next
-/// analysis is missing, so are the samples until the one after it; only those that the record ends too early
-/// for are not.
+/// Replaces `y` and `y_sim` by what an analyser shows that reports its result `delay` samples after taking
+/// its sample. Before the first analysis of a record it shows that first one. If the next analysis is
+/// missing, so are the samples until the one after it, unless the record ends before that analysis could be
+/// shown.
 void hold(const AnalyserTiming& timing, Eigen::Index delay,
           Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> y,
           Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> y_sim) {

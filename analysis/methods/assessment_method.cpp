@@ -12,12 +12,12 @@
 namespace mpm {
 namespace {
 
-/// Some row of the record changes.
+/// Does some row of the record change?
 bool moves(const Eigen::MatrixXd& record) {
   return record.cols() > 0 && (record.colwise() - record.col(0)).cwiseAbs().maxCoeff() > 0.0;
 }
 
-/// "37 of 400 samples of y2", of the CV that has the fewest; empty when none is missing.
+/// "37 of 400 samples of y2", for the CV with the most missing samples; empty if no sample is missing.
 std::string missing_samples(const Study& study, const Eigen::MatrixXd& y) {
   const Eigen::VectorX<Eigen::Index> missing = y.array().isNaN().rowwise().count().matrix();
   Eigen::Index worst = 0;
@@ -27,7 +27,8 @@ std::string missing_samples(const Study& study, const Eigen::MatrixXd& y) {
                            study.plant.cvs[static_cast<std::size_t>(worst)].name);
 }
 
-/// Which score of a verdict is no number; none where all are. Nothing need be said about a CV.
+/// Names a score of the verdict that is not a number; none if all are numbers. A CV without a verdict needs
+/// no score.
 std::optional<std::string> missing_score(const Study& study, const Assessment& assessment) {
   for (std::size_t cv = 0; cv < assessment.cvs.size(); ++cv)
     if (assessment.cvs[cv].flagged && std::isnan(assessment.cvs[cv].score))
@@ -35,7 +36,7 @@ std::optional<std::string> missing_score(const Study& study, const Assessment& a
   return std::isnan(assessment.score) ? std::optional("its score is not a number") : std::nullopt;
 }
 
-/// Why no method can learn from the benchmark; none: they can.
+/// Why no method can learn from the benchmark; none if they can.
 std::optional<std::string> unusable_benchmark(const AssessmentContext& context) {
   if (!context.benchmark)
     return std::nullopt;
@@ -166,7 +167,8 @@ Assessment Assessor::asked_of_seen(const AssessedLoop& loop) {
   }
 }
 
-/// A method that is denied the correction asks others without it as well: their answers are kept apart.
+/// A method that is denied the correction must ask other methods without it as well, so their answers are
+/// kept apart.
 Assessment Assessor::answer_of_method(const AssessedLoop& loop) {
   if (information_ == ModelInformation::shown)
     return method_->assess(*context_.correction->corrected(loop));

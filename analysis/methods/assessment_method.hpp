@@ -15,9 +15,9 @@
 #include "base/number_text.hpp"
 #include "scenarios/study/assessment_options.hpp"
 
-// The one interface of all methods that assess a loop, the chain of the thesis among them. A method is one
-// file that implements AssessmentMethod and describes it by an AssessmentMethodInfo, and its function in the
-// list of analysis/methods/method_table.cpp.
+// The one interface of all methods that assess a loop, including the chain of the thesis. A method is one
+// file, which implements AssessmentMethod and describes it by an AssessmentMethodInfo. The function of this
+// file is in the list of analysis/methods/method_table.cpp.
 
 namespace mpm {
 
@@ -27,22 +27,22 @@ struct AssessmentRequirements {
   bool moving_setpoints = false;  ///< some setpoint changes during the record
   bool benchmark = false;         ///< a period in which the controller worked as designed
   bool moving_mvs = false;        ///< some MV moves during the record
-  bool nominal_loop = false;      ///< the controller runs on its own model: S0, or the nominal loop
+  bool nominal_loop = false;      ///< the controller can run on its own model: for S0 or the nominal loop
   bool complete_record = true;    ///< no sample of a CV is missing, in the record and in the benchmark
-  /// Analyses, held to be complete, stand where the controller saw them and not where they were taken: of a
-  /// method by T0.
+  /// Where the method, which needs a complete record, sees held analyses: from the sample at which the
+  /// controller saw them, instead of the sample at which they were taken. For methods based on T0.
   bool analyses_as_shown = false;
 };
 
 /// How a method uses the errors of the model that the benchmark shows (AssessmentContext::correction), if the
-/// study learns them. This is a factor of its own: with_other_information() gives the same method with or
-/// without them.
+/// study learns them. A study can vary this use by itself: with_other_information() gives the same method
+/// with or without these errors.
 enum class ModelInformation : std::int8_t {
-  unused,   ///< it does not look at y_sim, or goes by errors of its own
-  nominal,  ///< nothing: y_sim is that of the nominal model
+  unused,   ///< the method does not look at y_sim, or uses model errors of its own
+  nominal,  ///< it does not use them: y_sim is that of the nominal model
   shown,    ///< y_sim of loop and benchmark contains them: the method sees the changes since the benchmark
-  learnt,   ///< it asks for them itself
-  denied,   ///< it asks for them and receives none
+  learnt,   ///< the method asks for them itself
+  denied,   ///< the method asks for them and receives none
 };
 
 template <>
@@ -58,12 +58,12 @@ enum class NumberScope { loop, cv, channel, cv_lag, window };
 /// How the findings of a study summarise a number.
 enum class NumberFinding {
   none,
-  summary,    ///< least, mean and largest value over the experiments of each kind; of the whole loop only
-  regression  ///< an estimate of the loss of variance of each CV: that of Ivar_basis (6.22) on it
+  summary,  ///< least, mean and largest value over the experiments of each kind; for numbers of the loop only
+  regression  ///< for an estimate of the loss of variance of each CV: regression of Ivar_basis (6.22) on it
 };
 
 /// A number that a method gives besides its verdicts, as archive, findings, report and gates use it. In table
-/// files its name stands after that of the method and a dot; its words are those of 0, 1, 2, ...
+/// files its full name is METHOD.NAME. Its words, if any, are those for the values 0, 1, 2, ...
 struct AssessmentNumberInfo : NumberText {
   AssessmentNumberInfo(NumberText text, NumberScope of, NumberFinding becomes = NumberFinding::none)
       : NumberText(std::move(text)), scope(of), finding(becomes) {}
@@ -96,7 +96,7 @@ struct MethodDescription {
   std::string title;    ///< "Sun et al. (2013)"
   std::string verdict;  ///< meaning of a flagged loop, in one line
   AssessmentRequirements requirements;
-  bool locates_cvs = false;       ///< Assessment::cvs has verdicts
+  bool locates_cvs = false;       ///< Assessment::cvs holds verdicts
   bool names_channels = false;    ///< Assessment::flagged_channels
   bool tells_sources = false;     ///< CvAssessment::source
   bool names_mismatches = false;  ///< Assessment::named_mismatch
@@ -114,22 +114,22 @@ struct MethodDescription {
   std::string given_options = {};
 };
 
-/// The options of a method, which `keys` ties to a value of them; `meaning` is for the manual.
+/// The options of a method. `keys` ties their keys to a value of type Options; `meaning` is for the manual.
 template <class Options>
 MethodOptionTable option_table(std::vector<OptionKey> (*keys)(Options&), std::string meaning) {
   return {std::move(meaning), [keys](MethodOptions& options) { return keys(options.of<Options>()); }};
 }
 
-/// A method that this program has.
+/// A method of this program.
 struct AssessmentMethodInfo : MethodDescription {
   using Make = std::function<std::unique_ptr<AssessmentMethod>(const AssessmentContext& context)>;
-  /// A variant of the method, NAME:END: without one of its parts, or with a flaw repaired.
+  /// A variant of the method, NAME:END: it lacks one of its parts, or has a flaw repaired.
   struct Reduced {
     std::string end, title;
     Make make;
   };
 
-  /// Further numbers on the loops of a study of named scenarios, in which every CV is looked at; may be
+  /// Additional numbers on the loops of a study of named scenarios, in which every CV is examined; may be
   /// empty.
   std::function<std::vector<AssessmentNumberInfo>()> scenario_numbers;
   /// `context` must outlive the method. Throws InputError for options that do not fit the study.
@@ -141,14 +141,15 @@ struct AssessmentMethodInfo : MethodDescription {
   std::vector<Reduced> reduced = {};
 };
 
-/// Ends of the names of with_other_information().
+/// Endings of the names that with_other_information() gives.
 inline constexpr std::string_view kCorrected = ":corrected", kUncorrected = ":uncorrected";
 
-/// The method with the correction that it lacks, NAME:corrected, or without the one that it has,
-/// NAME:uncorrected; none of a method that does not look at y_sim. Its options are those of the method.
+/// The method with the correction that it lacks, NAME:corrected, or without the correction that it has,
+/// NAME:uncorrected; none for a method that does not look at y_sim. The variant has the options of the
+/// method.
 std::optional<AssessmentMethodInfo> with_other_information(const AssessmentMethodInfo& method);
 
-/// AssessmentMethodInfo::reduced as methods, with the options of the method.
+/// The variants of AssessmentMethodInfo::reduced as methods, with the options of the method.
 std::vector<AssessmentMethodInfo> reduced_methods(const AssessmentMethodInfo& method);
 
 /// The first requirement that the loop or its context does not meet, in one sentence; none if all are met.
@@ -162,10 +163,10 @@ class Assessor {
   /// `context` must outlive the assessor.
   Assessor(const AssessmentMethodInfo& info, const AssessmentContext& context);
 
-  /// The verdict on a loop of the context's study. It is `failed`, with the reason, so that one odd loop does
-  /// not cost the verdicts on the others: if a value of the loop or of the benchmark is out_of_proportion(),
-  /// if the method refuses the records of either, if the score of the loop or of a CV that it judges is not a
-  /// number, or if a method that locates CVs flags the loop without the score of any CV.
+  /// The verdict on a loop of the context's study. It is `failed`, with the reason, if a value of the loop or
+  /// of the benchmark is out_of_proportion(), if the method refuses the records of either, if the score of
+  /// the loop or of a CV that it judges is not a number, or if a method that locates CVs flags the loop
+  /// without the score of any CV. So one odd loop does not cost the verdicts on the others.
   Assessment assess(const AssessedLoop& loop);
 
  private:
@@ -179,13 +180,13 @@ class Assessor {
   std::string name_;
   AssessmentRequirements requirements_;
   bool locates_cvs_;
-  ModelInformation information_;  ///< shown or denied where there is something to show or deny
+  ModelInformation information_;  ///< shown or denied only if there is a correction
   const AssessmentContext& context_;
   AssessmentMethodInfo::Make make_;
   std::optional<std::string> unusable_;  ///< why nothing can be learnt from the benchmark
   bool holds_analyses_;
-  std::unique_ptr<AssessmentContext> seen_;  ///< other than `context_` where signals or information are
-  /// The record of the window that is the benchmark of `seen_`.
+  std::unique_ptr<AssessmentContext> seen_;  ///< `context_` with other signals or information; may be null
+  /// The whole record of the benchmark of `seen_`, if that benchmark is a window.
   std::shared_ptr<const AssessedLoop> of_benchmark_;
   std::unique_ptr<AssessmentMethod> method_;  ///< made for the first loop to which it applies
 };

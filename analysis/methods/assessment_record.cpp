@@ -15,15 +15,15 @@ namespace {
 constexpr const char* kMismatchBound = "mismatch_bound";
 constexpr const char* kToldSource = "told_source";
 
-/// A number of each method that names mismatches, and none that follows from that: archives that were written
-/// before there was one have none.
+/// A number of each method that names mismatches. It is not among implied_numbers(), because archives that
+/// are older than this number do not have it.
 AssessmentNumberInfo mismatch_bound_info() {
   return {{kMismatchBound, "the size lies at an end of the searched range, so it is only a bound", "1", "",
            numbered({"none", "at_most", "at_least"})},
           NumberScope::channel};
 }
 
-/// None in an answer that has no such number.
+/// The bound with this number; SizeBound::none if the answer has no such number.
 SizeBound bound_of(double number) {
   for (const SizeBound bound : {SizeBound::at_most, SizeBound::at_least})
     if (number == static_cast<double>(bound))

@@ -13,12 +13,12 @@
 #include "base/non_finite.hpp"
 #include "scenarios/study/study.hpp"
 
-// The answers of methods as they are kept for all loops of a study: a vector of numbers for each loop, and a
-// form for each method that says where in it each number stands.
+// The answers of methods in the form in which they are kept for all loops of a study: a vector of numbers for
+// each loop, and for each method a form that says where each number stands in the vector.
 
 namespace mpm {
 
-/// Where one number of a method stands in AssessmentRecord::numbers: rows x columns of them, row by row.
+/// The place of one number of a method in AssessmentRecord::numbers: rows x columns of them, row by row.
 ///
 /// | scope   | rows | columns      |
 /// |---------|------|--------------|
@@ -34,29 +34,29 @@ struct NumberPlace {
   Eigen::Index size() const { return rows * columns; }
 };
 
-/// The form of the answers of one method on the loops of one study: its own numbers, after those that follow
-/// from what it tells, and before `window_flagged` (1, 0; NaN: no verdict) and `window_score` of a study that
-/// monitors:
+/// The form of the answers of one method on the loops of one study. First come the numbers that follow from
+/// what the method answers (table), then its own numbers. If the study monitors, `window_flagged` (1, 0; NaN:
+/// no verdict) and `window_score` come last.
 ///
 /// | name            | scope   | of methods that |
 /// |-----------------|---------|-----------------|
-/// | cv_flagged      | cv      | locate CVs: 1 flagged, 0 not; NaN: nothing is said about it |
+/// | cv_flagged      | cv      | locate CVs: 1 flagged, 0 not; NaN: no verdict on it         |
 /// | cv_score        | cv      | locate CVs: CvAssessment::score                          |
 /// | cv_source       | cv      | tell sources: FaultSource of a flagged CV or the worst one |
-/// | channel_flagged | channel | name channels: 1 for a channel that is named, 0 for others |
-/// | mismatch_parameter | channel | name mismatches: Assessment::named_mismatch instead of its channel |
-/// | mismatch_size, mismatch_lower, mismatch_upper | channel | the same, NaN elsewhere           |
+/// | channel_flagged | channel | name channels: 1 for a named channel, 0 for others         |
+/// | mismatch_parameter | channel | name mismatches: parameter of named_mismatch, at its channel |
+/// | mismatch_size, mismatch_lower, mismatch_upper | channel | size and interval there; NaN elsewhere |
 /// | named_candidate | loop    | name candidates: Assessment::named_candidate; NaN: none           |
 class AssessmentForm {
  public:
   AssessmentForm(MethodDescription method, const Study& study);
 
-  /// Without the numbers that follow from its verdicts.
+  /// The description of the method, without the numbers that follow from its verdicts.
   const MethodDescription& method() const { return method_; }
   const std::vector<NumberPlace>& places() const { return places_; }
-  /// Numbers in all.
+  /// The count of all numbers.
   Eigen::Index size() const { return size_; }
-  /// The place of the number of this name; null when there is none.
+  /// The place of the number of this name; null if there is none.
   const NumberPlace* find(std::string_view name) const;
 
  private:
@@ -67,49 +67,51 @@ class AssessmentForm {
   Eigen::Index size_ = 0;
 };
 
-/// Lags of the numbers with the scope cv_lag: 0 ... a quarter of the record, as AcfComparisonOptions has it.
+/// The number of lags of numbers with the scope cv_lag: 0 ... a quarter of the record, as in
+/// AcfComparisonOptions.
 Eigen::Index lag_count(const Study& study);
 
-/// Of several methods, in their order.
+/// The forms of several methods, in their order.
 using AssessmentForms = std::vector<std::shared_ptr<const AssessmentForm>>;
 
-/// The forms of these methods on the loops of a study. Those that name mismatches have a number
-/// `mismatch_bound` besides, NamedMismatch::bound, and those that tell sources `told_source`,
-/// AssessmentRecord::told(). Throws InputError for an unknown method.
+/// The forms of these methods on the loops of a study. Methods that name mismatches have an additional number
+/// `mismatch_bound` (NamedMismatch::bound), and methods that tell sources have `told_source`
+/// (AssessmentRecord::told()). Throws InputError for an unknown method.
 AssessmentForms assessment_forms(const Study& study, const std::vector<std::string>& methods);
 
-/// The number `told_source`, which methods have that tell sources and are asked anew: archives that were
-/// written before there was one have none.
+/// The number `told_source` of methods that tell sources. New answers have it; archives that are older than
+/// this number do not.
 AssessmentNumberInfo told_source_info();
 
-/// The answer of a method on one loop, as it is kept. Its form is that of the method.
+/// The answer of a method on one loop, as it is kept. Its form is the form of the method.
 struct AssessmentRecord {
   std::shared_ptr<const AssessmentForm> form;
   AssessmentStatus status = AssessmentStatus::not_assessed;
   std::string reason;  ///< why there is no verdict; empty if there is one, or if the method was not asked
   bool flagged = false;
   double score = kNaN;
-  Eigen::Index predicted_cv = -1;                    ///< Assessment::worst_cv(), -1 for none
+  Eigen::Index predicted_cv = -1;                    ///< Assessment::worst_cv(), or -1
   FaultSource predicted_source = FaultSource::none;  ///< of that CV
-  Eigen::VectorXd numbers = {};                      ///< as the form has them; empty unless the status is ok
-  double milliseconds = kNaN;                        ///< processor time; differs from run to run
+  Eigen::VectorXd numbers = {};  ///< in the places of the form; empty unless the status is ok
+  double milliseconds = kNaN;    ///< processor time; differs from run to run
 
   bool answered() const { return status == AssessmentStatus::ok; }
-  /// The number of this name; NaN when there is none, or no verdict.
+  /// The number of this name; NaN if there is no such number or no verdict.
   double number(std::string_view name, Eigen::Index row = 0, Eigen::Index column = 0) const;
-  /// All numbers of this name, rows x columns of its place; empty when there is none, or no verdict.
+  /// All numbers of this name, rows x columns of its place; empty if there is no such number or no verdict.
   Eigen::MatrixXd values(std::string_view name) const;
   /// Stores a number in its place, which must exist.
   void set_number(std::string_view name, double value, Eigen::Index row = 0, Eigen::Index column = 0);
   /// Whether the method flags this CV.
   bool flags(Eigen::Index cv) const;
-  /// `predicted_source`, of `other` with what it is about; without that in an archive that does not keep it.
+  /// `predicted_source`, with the place of the fault if the source is `other` and the archive keeps the
+  /// place.
   ToldSource told() const;
-  /// The source that it sees in a flagged CV.
+  /// The source that the method sees in a flagged CV; none for other CVs.
   FaultSource source_on(Eigen::Index cv) const;
   /// Whether the method names this channel.
   bool names(const Channel& channel) const;
-  /// The mismatch that it names; none: it names none, or gave no verdict.
+  /// The mismatch that the method names; none if it names none or gave no verdict.
   std::optional<NamedMismatch> named_mismatch() const;
 };
 

@@ -4,8 +4,8 @@
 
 namespace mpm {
 
-/// A method from outside that is not what its file says about it. It ends every command; any other InputError
-/// of a method that learns or assesses is a verdict that failed.
+/// An outside method does not keep what its file says about it. This error ends every command; any other
+/// InputError of a method that learns or assesses becomes a verdict with the status `failed`.
 class BrokenPromise : public InputError {
  public:
   using InputError::InputError;

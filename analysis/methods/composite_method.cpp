@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-/// The two methods that are asked. Assessors refer to them by name only, so that they may be copies.
+/// The two methods that are asked. Assessors refer to them only by name, so these may be copies.
 struct Parts {
   AssessmentMethodInfo detector, namer;
 };

@@ -27,7 +27,7 @@ std::string program_options(const TomlTable& table) {
   return text.str();
 }
 
-/// The name of an option that is a number.
+/// The name of an option, whose value must be a number; empty if the file gives none.
 std::string threshold_option(const TomlTable& table) {
   std::string name = read_text_or(table, "threshold_option", "");
   const toml::table* const options = table.find("options") ? table.find("options")->as_table() : nullptr;

@@ -87,7 +87,7 @@ class AnswerReader {
     return found == object.end() || found->is_null() ? nullptr : &*found;
   }
 
-  /// The same of a key that only methods have whose description says so.
+  /// The same for a key that is allowed only if the description of the method announces it.
   const Json* given_if(bool described, const Json& object, const char* key, const char* answers) const {
     const Json* const value = given(object, key);
     if (value != nullptr && !described)
@@ -101,7 +101,7 @@ class AnswerReader {
     return shortened(value.get<std::string>());
   }
 
-  /// Cut between two characters: it is kept with every loop.
+  /// Cuts the text between two characters, because it is kept with every loop.
   static std::string shortened(std::string text) {
     if (text.size() <= kLongestMethodText)
       return text;
@@ -112,7 +112,7 @@ class AnswerReader {
     return text + "...";
   }
 
-  /// JSON has no word for what is not finite: infinities are texts.
+  /// JSON has no word for values that are not finite: infinities are texts.
   double number(const char* key, const Json& value) const {
     if (value.is_null())
       return kNaN;
@@ -289,7 +289,7 @@ class AnswerReader {
   const std::string& place_;
 };
 
-/// As AnswerReader reads a number.
+/// The inverse of AnswerReader::number().
 Json number_json(double value) {
   if (std::isnan(value))
     return {};
@@ -303,7 +303,7 @@ Json channel_json(const Channel& channel, const PlantModel& plant) {
           plant.mvs[static_cast<std::size_t>(channel.mv)].name};
 }
 
-/// The three lists of what a method says about each CV.
+/// Adds the three lists of what a method says about each CV.
 void add_cvs_json(const Assessment& assessment, const PlantModel& plant, bool tells_sources, Json& json) {
   for (std::size_t cv = 0; cv < plant.cvs.size(); ++cv) {
     const CvAssessment of_cv = cv < assessment.cvs.size() ? assessment.cvs[cv] : CvAssessment{};
@@ -324,7 +324,7 @@ Json signal_json(const Eigen::MatrixXd& signal, SignalForm form) {
           {"base64", base64(std::as_bytes(std::span(rows.data(), static_cast<std::size_t>(rows.size()))))}};
 }
 
-/// Those with a scope that an answer can have.
+/// The numbers with a scope that an answer can have.
 Json numbers_json(const Assessment& assessment, const PlantModel& plant, const MethodDescription& method) {
   const auto ny = static_cast<Eigen::Index>(plant.cvs.size()),
              nu = static_cast<Eigen::Index>(plant.mvs.size());

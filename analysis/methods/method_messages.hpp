@@ -13,7 +13,7 @@
 #include "analysis/methods/assessment_method.hpp"
 #include "base/enum_words.hpp"
 
-// What a method from outside is told, and what it answers, as JSON (docs/bring_your_own.md). A number that is
+// The messages to a method from outside and its answers, as JSON (docs/bring_your_own.md). A number that is
 // missing or not finite is null.
 
 namespace mpm {
@@ -33,18 +33,18 @@ struct LoopSignal {
 /// y, u, u_target, d, y_sim, y_set, candidates.
 const std::vector<LoopSignal>& loop_signals();
 
-/// How the signals of a loop stand in a message: a list for each row, or {"rows": count, "base64": text} of
-/// the numbers row by row, 8 bytes each (IEEE 754, little-endian). NaN there is null in a list.
+/// The form of the signals of a loop in a message: a list for each row, or {"rows": count, "base64": text}
+/// with the numbers row by row, 8 bytes each (IEEE 754, little-endian). In a list NaN is null.
 enum class SignalForm : std::int8_t { lists, base64 };
 
 template <>
 inline constexpr auto kWords<SignalForm> = word_list("lists", "base64");
 
-/// {"y": [[...], ...], ...}: the signals of a loop. Of a window, with "whole" and "first".
+/// {"y": [[...], ...], ...}: the signals of a loop. A window has "whole" and "first" as well.
 nlohmann::ordered_json loop_json(const AssessedLoop& loop, SignalForm form = SignalForm::lists);
 
-/// Puts "y_sim_corrected" beside "y_sim" in the loop_json() of a loop: y_sim as ModelCorrection::corrected()
-/// has it, or y_sim where nothing is learnt.
+/// Puts "y_sim_corrected" beside "y_sim" in the loop_json() of a loop: y_sim of ModelCorrection::corrected(),
+/// or y_sim itself if nothing is learnt.
 void add_corrected(nlohmann::ordered_json& json, const AssessedLoop& loop, const ModelCorrection* correction,
                    SignalForm form = SignalForm::lists);
 
@@ -53,8 +53,8 @@ void add_corrected(nlohmann::ordered_json& json, const AssessedLoop& loop, const
 nlohmann::ordered_json context_json(const AssessmentContext& context, SignalForm form = SignalForm::lists);
 
 /// The answer of a method of this program on a loop, in the form of a message (see assessment_of()):
-/// `cv_flagged`, `cv_score` and `cv_source` of all CVs where it locates CVs, and its numbers of the loop, of
-/// CVs and of channels; `not_applicable` or `error` where there is no verdict.
+/// `cv_flagged`, `cv_score` and `cv_source` of all CVs if the method locates CVs, and its numbers of the
+/// loop, of CVs and of channels; `not_applicable` or `error` if there is no verdict.
 nlohmann::ordered_json answer_json(const Assessment& assessment, const PlantModel& plant,
                                    const MethodDescription& method);
 
@@ -62,18 +62,18 @@ nlohmann::ordered_json answer_json(const Assessment& assessment, const PlantMode
 ///
 /// | key            | value                                                                            |
 /// |----------------|----------------------------------------------------------------------------------|
-/// | flagged        | true, false; the only one that must be there                                     |
-/// | score          | number, larger is worse; 1 or 0 by `flagged` without one                         |
-/// | cv, source     | the CV that is worst, by name; its source: "none", "mpm", "ud", "mpm_ud", "other" |
-/// | cv_flagged, cv_score, cv_source | lists of ny instead of these two, null: nothing is said       |
-/// | channels       | [["y1", "u2"], ...]: channels of the model that are named                        |
+/// | flagged        | true, false; the only key that must be present                                   |
+/// | score          | number, larger is worse; without it 1 or 0 by `flagged`                          |
+/// | cv, source     | the worst CV, by name; its source: "none", "mpm", "ud", "mpm_ud", "other" |
+/// | cv_flagged, cv_score, cv_source | lists of ny instead of these two; null: no verdict on the CV  |
+/// | channels       | [["y1", "u2"], ...]: the named channels of the model                             |
 /// | mismatch       | {"channel", "parameter", "size", "lower", "upper"}; the last three may be absent |
 /// | candidate      | number of the logged signal that drives the disturbance, from 1                  |
-/// | numbers        | {"name": value}: those of the description; lists by CV, lists of lists by channel |
-/// | error, not_applicable | instead of all others: why there is no verdict                          |
+/// | numbers        | {"name": value}: numbers of the description; lists by CV, lists of lists by channel |
+/// | error, not_applicable | instead of all other keys: why there is no verdict                      |
 ///
-/// A key that the description does not say (channels of a method that names none) and an unknown one are
-/// refused: InputError, whose text begins with `place`.
+/// Refuses a key that the description of the method does not announce (channels of a method that names none)
+/// and an unknown key: InputError, whose text begins with `place`.
 Assessment assessment_of(const nlohmann::ordered_json& answer, const PlantModel& plant,
                          const MethodDescription& method, const std::string& place);
 

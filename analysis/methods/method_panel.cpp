@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-/// The answer of a method, with its time.
+/// The answer of a method, with its processor time.
 AssessmentRecord timed(const std::shared_ptr<const AssessmentForm>& form, Assessor& assessor,
                        const AssessedLoop& loop) {
   const double start = thread_seconds();
@@ -19,7 +19,7 @@ AssessmentRecord timed(const std::shared_ptr<const AssessmentForm>& form, Assess
   return record;
 }
 
-/// A store of values, each paid by the first who asks for it.
+/// A store of derived values. The first caller that asks for a value pays for its time.
 std::shared_ptr<const DerivedValues> kept_values() {
   auto values = std::make_shared<DerivedValues>();
   values->keep(PaidBy::first);
@@ -39,8 +39,8 @@ std::vector<AssessmentRecord> MethodPanel::assessed(const AssessmentForms& forms
                                                     const Own* own) const {
   std::optional<AssessmentContext> of_own;
   if (own != nullptr) {
-    // The controller or the excitation is another one; the benchmark is still what the study was designed
-    // for.
+    // The controller or the excitation differs; the benchmark still shows the controller for which the study
+    // was designed.
     const bool same_basis = &own->basis == &context_.basis;
     of_own.emplace(AssessmentContext{own->study, own->basis, context_.factory, context_.benchmark,
                                      context_.benchmark_study, context_.correction,
@@ -57,7 +57,7 @@ std::vector<AssessmentRecord> MethodPanel::assessed(const AssessmentForms& forms
     assessors.push_back(shared_assessor(table.method(form->method().name), context));
     records.push_back(timed(form, *assessors.back(), record));
   }
-  // What is derived from a window may be as large as the record, and is gone with it.
+  // Values derived from a window may be as large as the record; they are released with the window.
   const int windows = study_.monitoring ? study_.monitoring->count(static_cast<int>(loop.samples())) : 0;
   for (int number = 0; number < windows; ++number) {
     AssessedLoop window = window_of(record, study_.monitoring->begin(number), study_.monitoring->window);

@@ -14,8 +14,8 @@
 
 namespace mpm {
 
-// The one list of all methods, in the order in which people read them: NAME stands for the function
-// NAME_method() of the source NAME_method.cpp in this folder.
+// The one list of all methods, in the order in which people read them. NAME stands for the function
+// NAME_method() of the source NAME_method.cpp in a folder beside this file.
 // clang-format off
 #define MPM_EACH_METHOD(method)                                                \
   method(botelho)   /* the chain of the thesis, appendix A2 */                 \
@@ -28,11 +28,11 @@ namespace mpm {
   method(counterfactual) /* the simulated nominal loop, (3.24), (4.14) */      \
   method(mpmbench)  /* impact, CV, source, channel, parameter and size together */ \
   method(order)     /* do the MVs help to predict the simulation errors? */    \
-  method(excitation) /* do signals from outside of the loop? */                \
-  method(candidates) /* do logged signals that are not in the model? */      \
+  method(excitation) /* do signals from outside the loop help to predict them? */ \
+  method(candidates) /* do logged signals that are not in the model help? */   \
   method(likelihood) /* the posterior of all faults, of any size */            \
   method(adequacy)  /* does the repair of a channel bring more than it is worth? */ \
-  method(ceiling)    /* the same with the distributions of the study */       \
+  method(ceiling)    /* likelihood with the distributions of the study */    \
   method(lasso)     /* L1 regression of the simulation errors, Kono 2023 */    \
   method(local)     /* local approach to model divergence, Jiang 2009 */       \
   method(mqi_channels) /* model quality without each submodel, Li 2017 */      \
@@ -49,7 +49,7 @@ MPM_EACH_METHOD(MPM_DECLARE)
 MethodTable::MethodTable() : methods_{MPM_EACH_METHOD(MPM_CALL)} {
   for (const AssessmentMethodInfo& method : methods_)
     add_variants(method);
-  // What a trivial division of labour reaches.
+  // Baselines: what a trivial division of labour between two methods reaches.
   for (const auto& [detector, namer] : {std::pair("sse", "lasso"), std::pair("counterfactual", "order")})
     variants_.push_back(
         composite_method(fmt::format("{}+{}", detector, namer), method(detector), method(namer)));

@@ -9,27 +9,27 @@
 
 namespace mpm {
 
-/// The methods that a study may name: those of this program, and others that were added, such as programs.
+/// The methods that a study may name: those of this program, and methods that were added, such as programs.
 class MethodTable {
  public:
-  /// Those of this program, the chain of the thesis first.
+  /// The methods of this program, the chain of the thesis first.
   MethodTable();
 
-  /// Adds a method, as the last one, and its variant. Throws InputError for a name that exists.
+  /// Adds a method, as the last one, and its variants. Throws InputError if the name exists already.
   void add(AssessmentMethodInfo method);
 
   const std::vector<AssessmentMethodInfo>& methods() const { return methods_; }
-  /// Those that one asks for by name only: with_other_information() and reduced_methods() of each method, and
-  /// composites of two.
+  /// The methods that a study gets only by name: with_other_information() and reduced_methods() of each
+  /// method, and composites of two methods.
   const std::vector<AssessmentMethodInfo>& variants() const { return variants_; }
   std::vector<std::string> names() const;
-  /// Those and the variants.
+  /// names() and the names of the variants.
   std::vector<std::string> every_name() const;
   bool has(std::string_view name) const { return find(name) != nullptr; }
-  /// The method of this name. Throws InputError, with the known names, when there is none.
+  /// The method of this name. Throws InputError, with the known names, if there is none.
   const AssessmentMethodInfo& method(std::string_view name) const;
-  /// These names, "all" spelled out; `key` is for messages. Throws InputError for an unknown method, one that
-  /// is named twice, or none. "all" are names(), without variants.
+  /// These names, with "all" replaced by names(), without variants. `key` is for messages. Throws InputError
+  /// for an unknown method, a method that is named twice, or an empty list.
   std::vector<std::string> known(const std::vector<std::string>& names, const std::string& key) const;
   /// The tables [assessment.NAME] of all methods that have options, in their order.
   std::vector<MethodOptionTable> option_tables() const;

@@ -10,7 +10,7 @@ namespace mpm {
 /// records of any loop suffice.
 std::string needs_text(const MethodDescription& method);
 
-/// What a method tells about a loop besides its verdict, in words: "the CV, the source"; "nothing else".
+/// What a method tells about a loop besides its verdict, in words: "the CV, the source"; or "nothing else".
 std::string answers_text(const MethodDescription& method);
 
 }  // namespace mpm

@@ -44,7 +44,7 @@ Json describe_content(const MethodProgram& program) {
 }
 
 /// What a program says about itself, how it reads signals, and the methods of this program whose answers it
-/// is told with each loop.
+/// receives with each loop.
 struct ProgramDescription {
   MethodDescription method;
   SignalForm signals = SignalForm::lists;
@@ -58,7 +58,7 @@ std::string text_or(const JsonEntry& object, const char* key, const std::string&
   return found ? found->text(kLongestMethodText) : standard;
 }
 
-/// The places of the words in the list under a key, which may be absent, among those that are known.
+/// The positions in `known` of the words in the list under a key, which may be absent.
 std::vector<std::size_t> words_in(const JsonEntry& description, const char* key,
                                   const std::vector<std::string>& known) {
   std::vector<std::size_t> places;
@@ -104,7 +104,8 @@ void read_numbers(const JsonEntry& entry, MethodDescription& method) {
   }
 }
 
-/// The numbers by which probabilities are kept, which the program has not as numbers of its own.
+/// Adds the numbers that hold stated probabilities. The program must not have numbers of its own with these
+/// names.
 void take_probabilities(const JsonEntry& entry, MethodDescription& method) {
   for (const AssessmentNumberInfo& number : source_probability_numbers()) {
     if (std::any_of(method.numbers.begin(), method.numbers.end(),
@@ -184,7 +185,7 @@ ProgramDescription description_of(const MethodProgram& program, WaitingPrograms&
   return description;
 }
 
-/// One thread's or worker's own, except for the process that it asks.
+/// Each thread or worker has its own object; only the process that the object asks is shared.
 class ProgramMethod final : public AssessmentMethod {
  public:
   ProgramMethod(const MethodProgram& program, const ProgramDescription& description,
@@ -241,7 +242,8 @@ class ProgramMethod final : public AssessmentMethod {
     std::shared_ptr<Assessor> assessor;
   };
 
-  /// One that has the context. One that waits may bear no second context: then a new one has it.
+  /// A process that has the context. A waiting process may not accept a second context: then a new process
+  /// gets it.
   std::unique_ptr<RunningProgram> begun() const {
     std::unique_ptr<RunningProgram> running = programs_->take(context_text_);
     if (running->context == context_text_)

@@ -10,8 +10,8 @@
 #include "analysis/methods/assessment_record.hpp"
 #include "scenarios/faults/fault.hpp"
 
-// What a method may state besides its verdict: how probable each source of what is wrong is. It does so by
-// five numbers of the whole loop, whether it is of this program, a program, or a file of verdicts.
+// A method may state, besides its verdict, how probable each source of a fault is. It does so by five numbers
+// of the whole loop. This holds for methods of this program, for programs, and for files of verdicts.
 
 namespace mpm {
 
@@ -21,14 +21,15 @@ using SourceProbabilities = std::array<double, kWords<FaultSource>.size()>;
 /// The numbers that state them, in the same order: p_healthy, p_mpm, p_ud, p_both, p_other.
 const std::vector<AssessmentNumberInfo>& source_probability_numbers();
 
-/// Does a method with these numbers state them?
+/// Does a method have the numbers that state probabilities?
 bool states_probabilities(const MethodDescription& method);
 
-/// The probabilities that it states for a loop, with the sum 1; none if it states no probabilities.
+/// The probabilities that an answer states for a loop, scaled to the sum 1; none if it states none that are
+/// valid.
 std::optional<SourceProbabilities> stated_probabilities(const AssessmentRecord& said);
 
-/// The least probability of the truth that the logarithmic score counts: one that says 0 and is wrong is
-/// counted as if it had said this.
+/// The least probability of the truth that the logarithmic score counts: a method that states a smaller one,
+/// such as 0, is counted as if it had stated this.
 inline constexpr double kLeastScoredProbability = 0.001;
 
 /// -ln p / -ln kLeastScoredProbability, p the stated probability of the truth: 0 for a certain and right

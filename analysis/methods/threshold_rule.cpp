@@ -19,7 +19,7 @@ bool is_scored(const Json& answer, const char* key) {
   return score != answer.end() && !score->is_null();
 }
 
-/// Of each CV with a flag.
+/// Does each CV with a flag have a score?
 bool has_cv_scores(const Json& answer) {
   const auto flags = answer.find("cv_flagged");
   if (flags == answer.end() || flags->is_null())
@@ -30,7 +30,7 @@ bool has_cv_scores(const Json& answer) {
   return true;
 }
 
-/// How an answer breaks the rule; empty: it keeps it.
+/// How an answer breaks the rule; empty if it keeps the rule.
 std::string broken_by(const Json& answer, const Assessment& assessment, const MethodDescription& method,
                       double threshold) {
   if (!is_scored(answer, "score") || !has_cv_scores(answer))
