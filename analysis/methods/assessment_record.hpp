@@ -40,12 +40,12 @@ struct NumberPlace {
 ///
 /// | name            | scope   | of methods that |
 /// |-----------------|---------|-----------------|
-/// | cv_flagged      | cv      | locate CVs: 1 flagged, 0 not; NaN: no verdict on it         |
+/// | cv_flagged      | cv      | locate CVs: 1 flagged, 0 not; NaN: no verdict on it |
 /// | cv_score        | cv      | locate CVs: CvAssessment::score                          |
 /// | cv_source       | cv      | tell sources: FaultSource of a flagged CV or the worst one |
 /// | channel_flagged | channel | name channels: 1 for a named channel, 0 for others         |
 /// | mismatch_parameter | channel | name mismatches: parameter of named_mismatch, at its channel |
-/// | mismatch_size, mismatch_lower, mismatch_upper | channel | size and interval there; NaN elsewhere |
+/// | mismatch_size, mismatch_lower, mismatch_upper | channel | the same: its size and interval  |
 /// | named_candidate | loop    | name candidates: Assessment::named_candidate; NaN: none           |
 class AssessmentForm {
  public:

@@ -64,7 +64,7 @@ nlohmann::ordered_json answer_json(const Assessment& assessment, const PlantMode
 /// |----------------|----------------------------------------------------------------------------------|
 /// | flagged        | true, false; the only key that must be present                                   |
 /// | score          | number, larger is worse; without it 1 or 0 by `flagged`                          |
-/// | cv, source     | the worst CV, by name; its source: "none", "mpm", "ud", "mpm_ud", "other" |
+/// | cv, source     | the worst CV, by name; its source: "none", "mpm", "ud", "mpm_ud", "other"        |
 /// | cv_flagged, cv_score, cv_source | lists of ny instead of these two; null: no verdict on the CV  |
 /// | channels       | [["y1", "u2"], ...]: the named channels of the model                             |
 /// | mismatch       | {"channel", "parameter", "size", "lower", "upper"}; the last three may be absent |

@@ -32,7 +32,7 @@ namespace mpm {
   method(candidates) /* do logged signals that are not in the model help? */   \
   method(likelihood) /* the posterior of all faults, of any size */            \
   method(adequacy)  /* does the repair of a channel bring more than it is worth? */ \
-  method(ceiling)    /* likelihood with the distributions of the study */    \
+  method(ceiling)    /* likelihood with the distributions of the study */      \
   method(lasso)     /* L1 regression of the simulation errors, Kono 2023 */    \
   method(local)     /* local approach to model divergence, Jiang 2009 */       \
   method(mqi_channels) /* model quality without each submodel, Li 2017 */      \

@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-/// Errors up to this share of the largest y are rounding, as those of a loop without noise and fault are.
+/// Errors up to this share of the largest y are rounding, such as those of a loop without noise and fault.
 constexpr double kErrorResolution = 1e-10;
 
 }  // namespace
@@ -96,7 +96,7 @@ PrewhitenedTest new_in(const ErrorRegression& found, Eigen::Index cv, const Erro
     of.log_p = log_f_tail(of.f, static_cast<double>(of.freedom), denominator);
   };
   discount(test.all, benchmark.test.all);
-  // Signals from outside that move in one of the records alone are other groups.
+  // Signals from outside that move in only one of the two records form different groups.
   if (test.groups.size() == benchmark.test.groups.size())
     for (std::size_t group = 0; group < test.groups.size(); ++group)
       discount(test.groups[group], benchmark.test.groups[group]);

@@ -9,18 +9,18 @@
 #include "analysis/methods/assessed_loop.hpp"
 #include "scenarios/toml/option_keys.hpp"
 
-// What the methods have in common that ask whether other signals help to predict the simulation errors of
-// the nominal model.
+// The common part of the methods that ask whether other signals help to predict the simulation errors of the
+// nominal model.
 
 namespace mpm {
 
-/// Of the methods that regress the simulation errors on other signals
+/// Options of the methods that regress the simulation errors on other signals
 /// (analysis/methods/shared/error_regression).
 struct ErrorRegressionOptions {
-  double alpha = 0.01;     ///< share of loops in which nothing is to be found that are flagged at most
-  int filters = 4;         ///< Laguerre filters a signal
-  double pole = 0.8;       ///< of these filters
-  int largest_order = 12;  ///< of the autoregression of an error
+  double alpha = 0.01;     ///< largest share of loops without a fault that are flagged
+  int filters = 4;         ///< number of Laguerre filters of each signal
+  double pole = 0.8;       ///< pole of these filters
+  int largest_order = 12;  ///< largest order of the autoregression of an error
 
   bool operator==(const ErrorRegressionOptions&) const = default;
 };
@@ -30,20 +30,20 @@ OptionKeys keys(ErrorRegressionOptions& options);
 /// @throws InputError for an infinite value
 Eigen::MatrixXd model_errors(const AssessedLoop& loop);
 
-/// The responses of the Laguerre filters L_1 ... L_n, which have a delay of a sample and more, to each row of
-/// `signals` (m x N), N x n for each: with u(k-1), u(k-2), ... they say what of the past of a signal a
-/// process remembers that forgets as pole^k. In deviations from the first sample.
+/// The responses of the Laguerre filters L_1 ... L_n, which delay by at least one sample, to each row of
+/// `signals` (m x N): an N x n matrix for each row. They summarise u(k-1), u(k-2), ... for a process whose
+/// memory decays as pole^k. The signals are taken as deviations from their first sample.
 std::vector<Eigen::MatrixXd> filtered_signals(const Eigen::Ref<const Eigen::MatrixXd>& signals,
                                               const ErrorRegressionOptions& options);
 
-/// filtered_signals() of signals of the whole record of a loop (m x samples of it), of which the samples of
-/// the loop are kept: in a window the past before it counts.
+/// filtered_signals() of signals of the whole record of a loop (m x samples of the record), at the samples of
+/// the loop only: in a window the filters remember what was before it.
 std::vector<Eigen::MatrixXd> filtered_in_window(const AssessedLoop& loop,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& signals,
                                                 const ErrorRegressionOptions& options);
 
-/// prewhitened_test() of the error of each CV on filtered signals, by the autoregression of least BIC of the
-/// error alone; none for a CV with too few samples.
+/// prewhitened_test() of the error of each CV on filtered signals, with the autoregression of least BIC of
+/// the error alone; none for a CV with too few samples.
 struct ErrorRegression {
   Autoregression whiteness;
   PrewhitenedTest test;
@@ -53,23 +53,23 @@ ErrorRegressions error_regressions(const Eigen::MatrixXd& errors,
                                    const std::vector<Eigen::MatrixXd>& filtered,
                                    const ErrorRegressionOptions& options);
 
-/// What signals explain of the errors of a CV beyond what they explain in the benchmark, where nothing is
-/// wrong: there the errors follow the signals in what the correction by it cannot express, as the
-/// characteristic of a valve is, and so they do in every other record. With F_b of the benchmark and n, n_b
-/// the degrees of freedom of both autoregressions each test is that of
+/// The part of the errors of a CV that signals explain beyond what they explain in the benchmark, where
+/// nothing is wrong. There the errors follow the signals in a way that the correction by the benchmark cannot
+/// express, such as the characteristic of a valve, and they do so in every other record. With F_b of the
+/// benchmark and n, n_b the degrees of freedom of both autoregressions, each test uses instead of F
 ///
 ///   F / max(1, 1 + (F_b - 1) n / n_b)
 ///
-/// The test as it is where the benchmark (`usual`, of each CV) says nothing of the CV, or all signals
-/// together explain no more of it than chance does: F_b <= 1.
+/// The test is unchanged if the benchmark (`usual`, of each CV) has no test of the CV, or if all signals
+/// together explain no more of it there than chance does: F_b <= 1.
 PrewhitenedTest new_in(const ErrorRegression& found, Eigen::Index cv, const ErrorRegressions& usual);
 
-/// The samples without a gap that error_regressions() needs at most with so many signals.
+/// The largest number of samples without a gap that error_regressions() needs with so many signals.
 Eigen::Index error_regression_samples(const ErrorRegressionOptions& options, Eigen::Index signals);
 
-/// The score of a p-value among `tests`, of which one is to be below alpha by chance in a share alpha of the
-/// loops at most (Bonferroni): -log10(tests p), above -log10(alpha) when it is significant. Not held at 0, so
-/// that loops in which nothing is found have an order, too.
+/// The score of a p-value among `tests` tests: -log10(tests p), significant above -log10(alpha). With no
+/// fault, one of the tests is significant in a share alpha of the loops at most (Bonferroni). The score may
+/// be below 0, so that loops in which nothing is found have an order, too.
 double significance_score(double log_p, double tests);
 
 }  // namespace mpm

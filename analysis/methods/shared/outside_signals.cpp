@@ -8,7 +8,7 @@
 namespace mpm {
 namespace {
 
-/// The soft limits of the study, lower ones above upper ones, 2 ny x N; zero where there is none.
+/// The soft limits of the study, lower limits above upper limits, 2 ny x N; zero where there is no limit.
 Eigen::MatrixXd limit_signals(const Study& study, Eigen::Index samples) {
   Eigen::MatrixXd limits(2 * study.cv_count(), samples);
   for (Eigen::Index k = 0; k < samples; ++k) {

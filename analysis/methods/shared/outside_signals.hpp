@@ -15,15 +15,15 @@ class OutsideSignals {
   /// `study` must outlive the object.
   explicit OutsideSignals(const Study& study);
 
-  /// Those of this record that move, a row each; 0 rows when none does. Limits and test signals are those of
-  /// the study, which are the same in every loop of its length. `loop` is a whole record.
+  /// The outside signals of this record that move, one row each; 0 rows if none moves. Limits and test
+  /// signals come from the study: they are the same in every loop of its length. `loop` is a whole record.
   Eigen::MatrixXd of(const AssessedLoop& loop) const;
-  /// Its setpoints alone.
+  /// The setpoints of the controller in this record that move.
   Eigen::MatrixXd setpoints_of(const AssessedLoop& loop) const;
 
  private:
   const Study& study_;
-  Eigen::MatrixXd planned_;  ///< moving limits and test signals, a row each
+  Eigen::MatrixXd planned_;  ///< moving limits and test signals, one row each
 };
 
 }  // namespace mpm

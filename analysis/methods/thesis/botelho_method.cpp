@@ -14,8 +14,9 @@
 namespace mpm {
 namespace {
 
-/// A study that does not ask for Ivar of the basis case may have one whose variance is mostly noise: S0
-/// filters it out of y0, and Ivar of a perfect model is far from 1.
+/// Why the method does not apply; none if it does. A study that does not check Ivar of the basis case may
+/// have a basis case whose variance is mostly noise. S0 filters this noise out of y0, so Ivar of a perfect
+/// model is far from 1.
 std::optional<std::string> why_noise_outweighs(const AssessmentContext& context) {
   const DiagnosisOptions& options = context.study.diagnosis;
   if (options.self_check == SelfCheck::ivar)
@@ -66,14 +67,14 @@ class Botelho final : public AssessmentMethod {
                                  : flagged ? chain.source_of(chain.indicator_of(cv, y, nominal))
                                            : FaultSource::none;
       const double away = distance(diagnosis.ivar_diag(cv));
-      // Nothing is said about a CV that stands still.
+      // A CV that stands still gets no verdict.
       assessment.cvs.push_back({std::isnan(away) ? std::nullopt : std::optional(flagged), away, source});
     }
     assessment.numbers = chain_numbers(diagnosis);
     return assessment;
   }
 
-  /// Of a variance index from 1, as the study measures it to locate a CV.
+  /// The distance of a variance index from 1, as the study measures it to locate a CV.
   double distance(double ivar) const { return distance_from_one(ivar, options_.location_distance); }
 
   const Study& study_;

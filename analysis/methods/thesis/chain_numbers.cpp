@@ -18,7 +18,7 @@ ChainRows on_each_cv(const ScenarioRows& rows, Eigen::Index cvs) {
   return list;
 }
 
-/// The rows and the further ones behind them.
+/// Appends the further rows to `rows`.
 void append(const ChainRows& further, ChainRows& rows) {
   rows.insert(rows.end(), further.begin(), further.end());
 }

@@ -13,7 +13,7 @@ namespace {
 
 struct SseOptions {
   double threshold =
-      1.5;  ///< a CV is flagged when its mean squared error is above so many times the benchmark's
+      1.5;  ///< a CV with a mean squared error above this multiple of the benchmark's is flagged
 
   bool operator==(const SseOptions&) const = default;
 };
@@ -26,7 +26,7 @@ OptionKeys keys(SseOptions& options) {
       "around 1, so chance seldom exceeds 1.5, and errors of 0.7 standard deviations of the noise are seen")};
 }
 
-/// The measured CVs without an error where a sample is missing.
+/// The measured CVs, with y_sim where a sample is missing, so that the error there is 0.
 Eigen::MatrixXd without_gaps(const AssessedLoop& loop) {
   return loop.y.array().isNaN().select(loop.y_sim, loop.y);
 }
@@ -54,10 +54,10 @@ Eigen::VectorXd squares_of(const AssessedLoop& loop) {
   return mean_squared_errors(loop, y, simulation_errors(y, loop.y_sim));
 }
 
-/// What a monitor of the prediction error says, which does not ask whether the error reaches the control.
+/// A monitor of the prediction error. It does not ask whether the error reaches the control.
 class SimulationErrorMonitor final : public AssessmentMethod {
  public:
-  /// The requirements of the method say that there is a benchmark.
+  /// A benchmark exists, because the method requires one.
   explicit SimulationErrorMonitor(const AssessmentContext& context)
       : threshold_(context.study.assessment.of<SseOptions>().threshold),
         benchmark_(squares_of(*context.benchmark)) {}

@@ -11,8 +11,8 @@
 namespace mpm {
 namespace {
 
-/// Variance of each CV as Ivar_basis (6.22) takes it, gaps closed along straight lines; 0 for a CV that
-/// stands still.
+/// The variance of each CV as Ivar_basis (6.22) defines it, with gaps closed by straight lines; 0 for a CV
+/// that stands still.
 Eigen::VectorXd cv_variances(const Study& study, const AssessedLoop& loop) {
   const Eigen::MatrixXd y = gaps_closed(loop.y);
   SetpointTrajectories centres;
@@ -29,10 +29,11 @@ Eigen::VectorXd cv_variances(const Study& study, const AssessedLoop& loop) {
   return found;
 }
 
-/// The baseline: var y / var y_benchmark against the band of impact. It knows neither model nor controller.
+/// The baseline: compares var y / var y_benchmark with the band of impact. It knows neither model nor
+/// controller.
 class VarianceRatio final : public AssessmentMethod {
  public:
-  /// The requirements of the method say that there is a benchmark.
+  /// A benchmark exists, because the method requires one.
   explicit VarianceRatio(const AssessmentContext& context)
       : study_(context.study), benchmark_(cv_variances(study_, *context.benchmark)) {}
 
@@ -43,7 +44,7 @@ class VarianceRatio final : public AssessmentMethod {
       const double ratio = variance_ratio(found(cv), benchmark_(cv));
       assessment.numbers.push_back({"ratio", ratio, cv});
       CvAssessment& of_cv = assessment.cvs.emplace_back();
-      if (std::isnan(ratio))  // the CV stands still in both
+      if (std::isnan(ratio))  // the CV stands still in both records
         continue;
       of_cv = {study_.diagnosis.has_impact(ratio),
                distance_from_one(ratio, study_.diagnosis.location_distance)};
