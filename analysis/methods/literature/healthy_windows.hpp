@@ -10,44 +10,45 @@
 
 namespace mpm {
 
-/// How records are cut into windows, and when a window is outside.
+/// How records are cut into windows, and when a record lies outside.
 struct WindowRule {
   Eigen::Index window = 0;  ///< samples
-  Eigen::Index step = 0;    ///< samples distance between the starts of two windows
+  Eigen::Index step = 0;    ///< samples between the starts of two windows
   double nu = 0.01;         ///< share of the training samples that may lie outside
   double share = 0.5;       ///< share of the windows of a record that must lie outside
 
-  /// Of a record of this many samples.
+  /// The number of windows of a record with this many samples.
   Eigen::Index windows(Eigen::Index samples) const {
     return samples < window ? 0 : (samples - window) / step + 1;
   }
 };
 
-/// Plants and noise models of the overlapping windows of a healthy period of one CV, and two one-class
+/// The plants and noise models of the overlapping windows of a healthy period of one CV, and two one-class
 /// support vector machines that have learnt them (Lu, Forbes, Loewen, Backstroem, Dumont and Gopaluni 2020).
 ///
 /// In each window the noise model of e - X b_0, the autoregression of least BIC, prewhitens e and X, and
-/// least squares give the plant b, as in `prewhitened_groups`. The points of the machines are the models in
-/// units of their own standard errors, for those of b grow with the noise and shrink with the excitation:
+/// least squares give the plant b, as in `prewhitened_groups`. The points that the machines learn are these
+/// models in units of their own standard errors, because the standard error of b grows with the noise and
+/// shrinks with the excitation:
 ///
 /// - plant (m numbers): L^-1 R (b - b_0) with R'R = (A X)'(A X) / sigma^2 and L L' = I + R C_0 R',
 /// - noise (p + 1): L^-1 R (a - a_0) with R'R = C_a^-1 and L L' = I + R C_a0 R', and the logarithm of the
 ///   ratio of the variances of the innovations over its standard deviation,
 ///
-/// with a of `kHighestNoiseOrder`. b_0, a_0 and the variance of the whole period contain each of its windows,
-/// whose deviations are therefore divided by sqrt(1 - window/N). Few of the windows are independent,
-/// N/window: a machine learns from them and from points that are drawn, `kMachinePoints` in all, with the
-/// covariance of the windows drawn towards one variance in all directions, of weight m against N/window, and
-/// no less than 1.
+/// with a of order `kHighestNoiseOrder`. b_0, a_0 and the variance of the whole period contain each of its
+/// windows, so the deviations of these windows are divided by sqrt(1 - window/N). Only about N/window of the
+/// windows are independent. So a machine learns from the windows and from additional random points,
+/// `kMachinePoints` in all. The random points have the covariance of the windows, shrunk towards one variance
+/// in all directions, which is at least 1 and has the weight m against N/window.
 class HealthyWindows {
  public:
-  /// @throws InputError as `refined_groups`, and when the period is not longer than a window
+  /// @throws InputError as `refined_groups`, and if the period is not longer than a window
   HealthyWindows(const PlantAndNoise& period, const WindowRule& rule);
 
-  /// OneClassSvm::outsideness() that more than the share of the windows of the record exceed: above 0 they
-  /// lie outside. The noise of a window is e - X b_0 where its plant is inside, and e - X b of
-  /// `refined_groups` where it is not; less than 1 % of the variance of X (b - b_0) is not judged. -infinity
-  /// without a regressor, or without noise.
+  /// The value of OneClassSvm::outsideness() that more than the given share of the windows of the record
+  /// exceed: above 0 the record lies outside. The noise of a window is e - X b_0 if its plant lies inside,
+  /// and e - X b of `refined_groups` if it lies outside. In the second case noise below 1 % of the variance
+  /// of X (b - b_0) is not judged. -infinity if there is no regressor, or no noise.
   struct Outside {
     double plant, noise;
   };
@@ -70,7 +71,7 @@ class HealthyWindows {
   std::optional<OneClassSvm> plants_, noises_;
 };
 
-/// Points that a machine learns from, those of the windows among them.
+/// The number of points that a machine learns from, including the points of the windows.
 inline constexpr Eigen::Index kMachinePoints = 300;
 
 }  // namespace mpm

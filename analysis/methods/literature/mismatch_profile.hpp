@@ -21,18 +21,19 @@ struct ProfiledMismatch {
   MismatchParameter parameter;
   double value, lower, upper;
   double residual_sum;
-  SizeBound bound = SizeBound::none;  ///< the value lies at an end of the search
+  SizeBound bound = SizeBound::none;  ///< tells if the value lies at an end of the search
 };
 
-/// The best mismatch of gain, of time constant and of dead time of a channel, in the order of their residual
-/// sums: the first is the one to be named. With s(v) = (G0_ij(v) - G0_ij) u_j and the autoregression A of
-/// order p,
+/// The best mismatch of the gain, of the time constant and of the dead time of a channel, in the order of
+/// their residual sums: the first is the one to name. With s(v) = (G0_ij(v) - G0_ij) u_j and the
+/// autoregression A of order p,
 ///
 ///   V(v) = min over c, A of sum_k (A (e - s(v)) - c)^2,    interval: n ln(V(v)/V_min) <= chi2(1)
 ///
-/// which is -2 ln of the likelihood of Gaussian noise up to a constant, noise model and level profiled out.
-/// Gains are searched from -2 to 4 times that of the model, time constants from 1/8 to 8 times, dead times up
-/// to 10 samples to either side, on a grid first and then by golden section between its neighbours.
+/// which is -2 ln of the likelihood of Gaussian noise up to a constant, with noise model and level profiled
+/// out. Gains are searched from -2 to 4 times that of the model, time constants from 1/8 to 8 times, dead
+/// times up to 10 samples to either side. The search uses a grid first, and then the golden section between
+/// the neighbours of the best point.
 ///
 /// | symbol | name    | shape | meaning                                        |
 /// |--------|---------|-------|------------------------------------------------|

@@ -8,13 +8,13 @@
 #include "plants/linear/transfer_function.hpp"
 #include "scenarios/faults/fault.hpp"
 
-// How methods look for the one parameter of a channel that is wrong.
+// How methods search for the one wrong parameter of a channel.
 
 namespace mpm {
 
 using MismatchObjective = std::function<double(double)>;
 
-/// Where a parameter is searched.
+/// The range and the points of the search for a parameter.
 struct SearchGrid {
   double first, last;
   Eigen::Index points;
@@ -24,8 +24,8 @@ struct SearchGrid {
   }
 };
 
-/// A channel in which one parameter is searched, in a coordinate x in which steps are alike: the time
-/// constant by its logarithm.
+/// A channel in which one parameter is searched, in a coordinate x in which equal steps have similar effects:
+/// the logarithm for a time constant.
 struct MismatchFamily {
   MismatchParameter parameter;
   SearchGrid grid;
@@ -33,12 +33,12 @@ struct MismatchFamily {
   std::function<double(double)> value;
 };
 
-/// Those of gain, time constant and dead time, where the channel has them: gains from -2 to 4 times that of
-/// the model, time constants from 1/8 to 8 times, dead times up to 10 samples to either side. `channel` must
-/// outlive them.
+/// The families of gain, time constant and dead time, as far as the channel has them: gains from -2 to 4
+/// times that of the model, time constants from 1/8 to 8 times, dead times up to 10 samples to either side.
+/// `channel` must outlive them.
 std::vector<MismatchFamily> mismatch_families(const TransferFunction& channel, double sample_time);
 
-/// The least value on the grid, refined between its neighbours by golden section.
+/// The point of the least value on the grid, refined between its neighbours by golden section.
 double grid_minimiser(const MismatchObjective& objective, const SearchGrid& grid);
 
 /// The point at which the objective crosses `level` between `inside`, where it is below, and the end of the

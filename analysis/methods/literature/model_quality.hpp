@@ -19,8 +19,8 @@ enum class ModelQualityStatus : std::int8_t {
 /// Options of `model_quality`.
 struct ModelQualityOptions {
   HighOrderArxOptions arx;
-  /// Divide the sums of squares of e^d by n - p instead of n, p the coefficients that were fitted: without
-  /// this correction the index of a perfect model is about sqrt(1 - p/n).
+  /// Divides the sums of squares of e^d by n - p instead of n, with p the number of fitted coefficients.
+  /// Without this correction the index of a perfect model is about sqrt(1 - p/n).
   bool correct_for_parameters = false;
 
   /// @throws InputError for invalid options of the ARX model
@@ -37,10 +37,10 @@ struct ModelQualityOptions {
 /// | MQI           | mqi            |       | sum_i Q_i sum e^d_i^2 / sum_i Q_i sum e^p_i^2  (2.4), (4.2) |
 ///
 /// Of (2.4) and (4.3) only the second has a root, so iMQI_i^2 is the MQI of CV i alone. NaN stands for an
-/// index of errors that are 0, and for the MQI without weights (a range MPC has none).
+/// index of errors that are 0, and for the MQI if there are no weights (a range MPC has none).
 ///
-/// Both are 1 for a perfect model and less for one whose errors can be predicted; sampling, and references
-/// that do not explain the loop, can make them larger than 1.
+/// Both indices are 1 for a perfect model, and less for a model whose errors can be predicted. They can
+/// exceed 1 through sampling, or if the references do not explain the loop.
 struct ModelQuality {
   ModelQualityStatus status = ModelQualityStatus::ok;
   double mqi = 0.0;

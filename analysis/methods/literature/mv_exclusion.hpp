@@ -15,7 +15,7 @@ enum class MvUse : std::int8_t {
   evaluated = 0,
   saturated = 1,       ///< at a limit for too large a share of the record
   standing_still = 2,  ///< without excitation
-  dependent = 3,       ///< moves only as the other MVs make it: nothing of its own is left to correlate
+  dependent = 3,       ///< moves only with the other MVs: no part of its own is left to correlate
 };
 
 template <>
@@ -31,8 +31,9 @@ struct MvLimits {
 /// @throws InputError for limits other than one an MV, or a lower limit above the upper one
 Eigen::VectorXd saturated_shares(const Eigen::Ref<const Eigen::MatrixXd>& u, const MvLimits& limits);
 
-/// Saturated: a share above `largest_share`. Standing still: a standard deviation of at most
-/// `smallest_deviation`, or that rounding explains (`variance_floor`). Evaluated: all others. u is nu x N.
+/// How each MV can be used. Saturated: a share above `largest_share` at a limit. Standing still: a standard
+/// deviation of at most `smallest_deviation`, or one that rounding explains (`variance_floor`). Evaluated:
+/// all others. u is nu x N.
 /// @throws InputError as `saturated_shares`, and for fewer than 2 samples
 std::vector<MvUse> mv_uses(const Eigen::Ref<const Eigen::MatrixXd>& u, const MvLimits& limits,
                            double largest_share, double smallest_deviation);

@@ -4,30 +4,30 @@
 
 namespace mpm {
 
-/// The model G_d0 = C/D of the disturbance at one output, polynomials in q^-1 that begin with 1; by default
-/// 1: the output error is white.
+/// The model G_d0 = C/D of the disturbance at one output, with polynomials in q^-1 that begin with 1. The
+/// default is 1: the output error is white.
 struct NoiseModel {
   Eigen::VectorXd C = Eigen::VectorXd::Ones(1);
   Eigen::VectorXd D = Eigen::VectorXd::Ones(1);
 
-  /// Order of the difference equation that makes e^p.
+  /// The order of the difference equation that gives e^p.
   Eigen::Index order() const;
 };
 
-/// G_d0 = (1 - c q^-1)/(1 - q^-1), integrated noise seen through white noise: the predictor is the output
-/// error of the past, weighted with (1 - c) c^i. c = 0 takes the last one over, as the output bias of the
+/// G_d0 = (1 - c q^-1)/(1 - q^-1), integrated noise plus white noise. The predictor is the sum of the past
+/// output errors, weighted with (1 - c) c^i. With c = 0 it repeats the last error, as the output bias of the
 /// controller does.
 /// @throws InputError for c outside [0, 1)
 NoiseModel integrated_noise(double c);
 
-/// G_d0 = 1/D, the autoregression of order 0 ... `highest_order` of least BIC in the output errors v = y -
-/// y_sim of a record (N) that is known to be good. 0, white noise, for errors that are 0.
+/// G_d0 = 1/D, the autoregression of order 0 ... `highest_order` with the least BIC for the output errors v =
+/// y - y_sim of a record (N) that is known to be good. The order is 0, white noise, if all errors are 0.
 /// @throws InputError for an order below 0, values that are not finite, or fewer than 2 samples for each
 /// order
 NoiseModel autoregressive_noise(const Eigen::Ref<const Eigen::VectorXd>& v, Eigen::Index highest_order);
 
-/// The variance of the innovations of a record about its mean, of the same autoregression: their squares from
-/// sample `highest_order` on over the degrees of freedom that are left.
+/// The variance of the innovations of a record about its mean, by the same autoregression: the sum of their
+/// squares from sample `highest_order` on over the remaining degrees of freedom.
 /// @throws InputError as `autoregressive_noise`
 double innovation_variance(const Eigen::Ref<const Eigen::VectorXd>& v, Eigen::Index highest_order);
 

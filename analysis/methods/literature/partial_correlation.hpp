@@ -7,7 +7,7 @@
 namespace mpm {
 
 /// The correlation of the residual of a prediction error with the residual of an MV, at the lags at which the
-/// MV can act.
+/// MV can have an effect.
 ///
 /// | member     | shape                 | meaning                                                          |
 /// |------------|-----------------------|------------------------------------------------------------------|
@@ -22,7 +22,7 @@ struct PartialCorrelation {
   Eigen::Index lag = 0;
   double peak = kNaN;
 
-  /// Whether |peak| is outside of the band, and above `weakest`; false without a correlation.
+  /// Is |peak| outside the band and above `weakest`? False if there is no correlation.
   bool is_strong(double weakest = 0.0) const;
 };
 
@@ -31,18 +31,18 @@ struct PartialCorrelation {
 ///   r(l) = sum_k eps2(k) eps1(k-l) / sqrt(sum eps1^2 sum eps2^2),   l = min_lag ... max_lag
 ///
 /// about the mean for eps1 and about 0 for eps2.
-/// The effect of a mismatch comes with dead time and lag, so it shows at many l; at l < 0 there is only
-/// feedback, and where u(k) acts after y(k) at l = 0 as well. Both residuals are coloured: a mismatch acts
-/// through a slow process, an MV moves with setpoints. Their correlations then scatter more than those of
-/// white signals, by Bartlett's formula for independent series (Box and Jenkins 1976, section 11.1.3; Ljung
-/// 1999, eq. 16.66),
+/// The effect of a mismatch comes with dead time and lag, so it shows at many l. At l < 0 there is only
+/// feedback, and also at l = 0 if u(k) acts after y(k). Both residuals are coloured: a mismatch acts through
+/// a slow process, and an MV moves with setpoints. Their correlations then scatter more than those of white
+/// signals, by Bartlett's formula for independent series (Box and Jenkins 1976, section 11.1.3; Ljung 1999,
+/// eq. 16.66),
 ///
 ///   var r(l) = sum_m r_11(m) r_22(m) / (N - p)
 ///
 /// and the band is z times its root; the white-noise band z/sqrt(N - p) would take most coloured residuals
 /// for mismatches. The sum runs over |m| <= 2 sqrt(N), with the weights of Bartlett's window, which keep it
-/// positive. p is the number of coefficients that the models of (2.5) and (2.6) each fitted to the
-/// same samples: residuals of p regressors have N - p degrees of freedom.
+/// positive. p is the number of coefficients that the models of (2.5) and (2.6) each fitted to the same
+/// samples: residuals from p regressors have N - p degrees of freedom.
 ///
 /// Residuals without variance have no correlation: NaN, which is not strong.
 /// @throws InputError for fewer than 2 samples, different lengths, values that are not finite, a confidence

@@ -10,8 +10,8 @@ namespace mpm {
 ///
 ///   P(jw) = G(jw) / G0(jw) = 1 + sum_k b_k L_k(jw) / G0(jw)
 ///
-/// of the plant that adds sum_k b_k L_k u to the output of the model, L_k = channel_filters() and G0 the
-/// model behind its hold, both sampled. What of the model is wrong has a signature in it:
+/// of the plant that adds sum_k b_k L_k u to the output of the model. L_k are the channel_filters(), and G0
+/// is the model behind its hold, both sampled. Each kind of model error has a signature in P:
 ///
 ///   gain           |P| flat and not 1, arg P = 0
 ///   time constant  |P| bent, 1 at w = 0
@@ -33,11 +33,12 @@ Eigen::VectorXcd plant_model_ratio(const TransferFunction& channel, double sampl
 /// The three numbers that people read from a plant-model ratio.
 struct RatioSignature {
   double magnitude;  ///< |P| at `kLowFrequency` over the residence time of the channel
-  double bend;       ///< |P| at `kHighFrequency` over the residence time, over `magnitude`
-  double delay;      ///< -arg P / w there, time unit of the channel: the slope of the phase
+  double bend;       ///< |P| at `kHighFrequency` over the residence time, divided by `magnitude`
+  double delay;      ///< -arg P / w at that frequency, time unit of the channel: the slope of the phase
 };
 
-/// Where a signature is read, in units of the inverse residence time of the channel (with its dead time).
+/// The frequencies at which a signature is read, in units of the inverse residence time of the channel (with
+/// its dead time).
 inline constexpr double kLowFrequency = 0.1;
 inline constexpr double kHighFrequency = 1.0;
 

@@ -41,30 +41,33 @@ struct PrewhitenedGroups {
   Eigen::Index rank = 0;
   Eigen::Index freedom = 0;
 
-  /// |Q_j'r|^2 / (m_j' sigma^2), which is F(m_j', freedom) when no group explains anything; 0 for a group
-  /// without columns and for an error that is 0.
+  /// |Q_j'r|^2 / (m_j' sigma^2), which has the distribution F(m_j', freedom) if no group explains anything; 0
+  /// for a group without columns and for an error that is 0.
   double ratio(std::size_t group) const;
-  /// The increase of the sum of squares when the group is left out of the regression with all the others,
-  /// over m_j' sigma^2.
+  /// The increase of the residual sum of squares if the group is removed from the regression with all the
+  /// others, over m_j' sigma^2.
   double partial_ratio(std::size_t group) const;
   /// The quantile of F(m_j', freedom) that is exceeded with this probability; infinite without columns.
   double critical_ratio(std::size_t group, double probability) const;
-  /// The squares that all groups together explain over rank sigma^2: F(rank, freedom) when none does.
+  /// The squares that all groups together explain over rank sigma^2: F(rank, freedom) if no group explains
+  /// anything.
   double joint_ratio() const;
   /// The quantile of F(columns, freedom) that is exceeded with this probability; infinite without columns.
   double critical_ratio_of(Eigen::Index columns, double probability) const;
-  /// Coefficients b of all groups together, one after the other; of least norm where they are not determined.
+  /// The coefficients b of all groups together, one group after the other, with the least norm if they are
+  /// not determined.
   Eigen::VectorXd coefficients() const;
 };
 
-/// Largest order of the autoregression of the noise. Its order is that of least BIC.
+/// The largest order of the autoregression of the noise. The order used is the one of least BIC.
 inline constexpr Eigen::Index kHighestNoiseOrder = 12;
 
-/// The shortest record for which the regression of `columns` regressors leaves 20 degrees of freedom.
+/// The length of the shortest record for which the regression on `columns` regressors leaves 20 degrees of
+/// freedom.
 Eigen::Index fewest_prewhitened_samples(Eigen::Index columns);
 
-/// The regression about v = e, with the noise model of e alone: that of a record in which no group explains
-/// anything, against which `ratio` and `joint_ratio` test.
+/// The regression about v = e, with the noise model of e alone. It assumes that no group explains anything:
+/// `ratio` and `joint_ratio` test against this assumption.
 ///
 /// | symbol | name   | shape        | meaning                              |
 /// |--------|--------|--------------|--------------------------------------|
@@ -75,8 +78,8 @@ Eigen::Index fewest_prewhitened_samples(Eigen::Index columns);
 PrewhitenedGroups prewhitened_groups(const Eigen::Ref<const Eigen::VectorXd>& e,
                                      const std::vector<Eigen::MatrixXd>& groups);
 
-/// The regression when some group explains a part: about v = e - sum_j X_j b_j, in three turns from the least
-/// squares of e on the groups.
+/// The regression for the case that some group explains a part of e: about v = e - sum_j X_j b_j, in three
+/// iterations that start from the least squares of e on the groups.
 PrewhitenedGroups refined_groups(const Eigen::Ref<const Eigen::VectorXd>& e,
                                  const std::vector<Eigen::MatrixXd>& groups);
 

@@ -17,13 +17,13 @@ namespace mpm {
 /// @throws InputError for more directions than axes or values that are not finite
 Eigen::VectorXd subspace_cosines(const Eigen::Ref<const Eigen::MatrixXd>& directions);
 
-/// The cosine above which a CV belongs to a subspace that is estimated from samples, with 45 degrees as the
-/// cutting angle (2.14):
+/// The cosine above which a CV belongs to a subspace that is estimated from samples, for a cutting angle of
+/// 45 degrees (2.14):
 ///
 ///   beta = sqrt(1/2 + z / sqrt(2 n_g)),   n_g = sqrt(n_I n_II)
 ///
-/// with z the two-sided normal quantile of `confidence`. Above 1, which no cosine exceeds, for the shortest
-/// records (n_g below 8 at 0.95).
+/// with z the two-sided normal quantile of `confidence`. For the shortest records (n_g below 8 at 0.95) beta
+/// is above 1, which no cosine exceeds.
 /// @throws InputError unless both lengths are 1 or more and 0 < confidence < 1
 double subspace_cosine_limit(Eigen::Index samples_benchmark, Eigen::Index samples_monitored,
                              double confidence);

@@ -13,19 +13,21 @@ namespace mpm {
 
 /// Limits of the generalised eigenvalues.
 enum class VariabilityLimits : std::int8_t {
-  published = 0,     ///< of one direction that is chosen beforehand (`variance_ratio_limits`)
-  largest_root = 1,  ///< of all directions at once (`largest_root_limits`)
+  published = 0,     ///< for one direction that is chosen beforehand (`variance_ratio_limits`)
+  largest_root = 1,  ///< for all directions at once (`largest_root_limits`)
 };
 
 /// Options of `compare_variability`.
 struct VariabilityOptions {
-  /// Of the limits of each eigenvalue (2.10), (2.11) and of the angles (2.14). The thesis takes 0.95.
+  /// Confidence of the limits of each eigenvalue (2.10), (2.11) and of the angles (2.14). The thesis takes
+  /// 0.95.
   double confidence = 0.95;
-  /// Largest lag of the sum (2.9); 0: all, as the thesis prints it. All lags overstate the sum and so widen
-  /// the limits (`autocorrelation_factor`): a change is called significant too rarely, not too often.
+  /// Largest lag of the sum (2.9); 0: all lags, as the thesis prints it. All lags overstate the sum and so
+  /// widen the limits (`autocorrelation_factor`): a change is then called significant too rarely.
   Eigen::Index largest_lag = 0;
-  /// The eigenvectors are the directions in which the two records differ most. With the published limits,
-  /// records of the same law therefore differ too often, and so do the CVs near these directions.
+  /// The eigenvectors are the directions in which the two records differ most. With the published limits, two
+  /// records with the same statistics are therefore too often called different, and so are the CVs near these
+  /// directions.
   VariabilityLimits limits = VariabilityLimits::published;
 
   /// @throws InputError unless 0 < confidence < 1 and largest_lag >= 0
@@ -33,7 +35,7 @@ struct VariabilityOptions {
   bool operator==(const VariabilityOptions&) const = default;
 };
 
-/// Change of the variability along a direction, or of a CV.
+/// Change of the variability along a direction, or of one CV.
 enum class VariabilityChange : std::int8_t {
   none = 0,    ///< 1 lies within the limits
   worse = 1,   ///< both limits lie above 1
@@ -49,15 +51,15 @@ struct VariabilityDirection {
   Eigen::VectorXd p;          ///< ny; unit length
   double f_benchmark = kNaN;  ///< f_I of (2.9)
   double f_monitored = kNaN;  ///< f_II of (2.9)
-  Interval limits;  ///< of mu (VariabilityLimits); of records that are too short the upper one is +infinity,
-                    ///< with `largest_root` the lower one 0
+  Interval limits;  ///< of mu (VariabilityLimits). If the records are too short, the upper limit is +infinity
+                    ///< and, with `largest_root`, the lower limit is 0
   VariabilityChange change = VariabilityChange::none;
 };
 
 enum class VariabilityStatus : std::int8_t {
   ok = 0,
-  /// The control errors of the benchmark are linearly dependent: some direction has no variance to compare
-  /// with, and I_v has none to be divided by. Nothing else is known then.
+  /// The control errors of the benchmark are linearly dependent. Some direction then has no variance to
+  /// compare with, and I_v has none to divide by. All other results are missing.
   singular_benchmark = 1,
 };
 
@@ -71,7 +73,8 @@ struct VariabilityComparison {
   std::vector<VariabilityDirection> directions;  ///< ny of them, mu descending
   Eigen::VectorXd cos_worse;                     ///< cos theta^w (2.12) of each CV
   Eigen::VectorXd cos_better;                    ///< cos theta^b (2.13) of each CV
-  /// (2.14): a CV whose cosine is above it is to be held responsible for the change, and may be for both.
+  /// The limit of the cosines (2.14): a CV with a cosine above it is responsible for the change. A CV may be
+  /// responsible for both kinds of change.
   double beta = kNaN;
 };
 
@@ -81,10 +84,9 @@ struct VariabilityComparison {
 ///   I_v = det cov(e_II) / det cov(e_I)       (2.7)
 ///   cov(e_II) p = mu cov(e_I) p              (2.8)
 ///
-/// with limits of each mu from the autocorrelation of the errors along p (2.9 to 2.11; or those of
-/// VariabilityLimits::largest_root), and the CVs near to
-/// the subspaces of those p whose mu is significantly above or below 1 (2.12 to 2.14; (2.13) is printed with
-/// P_w instead of P_b).
+/// with limits of each mu from the autocorrelation of the errors along p (2.9 to 2.11; or the limits of
+/// VariabilityLimits::largest_root), and the CVs near the subspaces of those p whose mu is significantly
+/// above or below 1 (2.12 to 2.14; (2.13) is printed with P_w instead of P_b).
 ///
 /// | symbol    | name               | meaning                                  | shape     | unit  |
 /// |-----------|--------------------|------------------------------------------|-----------|-------|
