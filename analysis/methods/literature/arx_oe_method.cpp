@@ -24,8 +24,9 @@
 namespace mpm {
 namespace {
 
-/// The probability that is shared out to the tests of all CVs, one of the plant and two of the noise. It is
-/// not stated as that of a false alarm: one benchmark serves for all loops of a study, and more are flagged.
+/// The probability that is divided among the tests of all CVs, one of the plant and two of the noise. It is
+/// not stated as the probability of a false alarm: all loops of a study share one benchmark, so more loops
+/// are flagged.
 constexpr double kArxOeFalseAlarms = 0.01;
 constexpr double kTestsOfCv = 3.0;
 
@@ -33,14 +34,15 @@ enum class ArxOeForm : std::int8_t { automatic, windows, covariances };
 
 struct ArxOeOptions {
   ArxOeForm form = ArxOeForm::automatic;
-  int window = 0;  ///< samples; 0: by kSamplesOfCoefficient
+  int window = 0;  ///< samples; 0: follows from kSamplesOfCoefficient
   int step = 0;    ///< samples; 0: a quarter of a window
   double nu = 0.01, share = 0.5;
 
   bool operator==(const ArxOeOptions&) const = default;
 };
 
-// None has a default that a resolved study would have: studies that leave them out remain what they were.
+// None of these options has a default that appears in a resolved study, so studies without them stay
+// unchanged.
 OptionKeys keys(ArxOeOptions& options) {
   const auto whole = [](std::string name, int& value, std::string meaning) {
     return key::option(std::move(name), "whole number", std::move(meaning), "samples")
@@ -83,24 +85,24 @@ OptionKeys keys(ArxOeOptions& options) {
 constexpr Eigen::Index kSamplesOfCoefficient = 16;
 /// Steps in a window, by default.
 constexpr Eigen::Index kStepsOfWindow = 4;
-/// Windows without overlap from which on a period shows how much healthy models scatter.
+/// From this number of windows without overlap on, a period shows how much healthy models scatter.
 constexpr Eigen::Index kFewestWindows = 4;
 
-/// Plant and noise of a loop apart (Lu, Forbes, Loewen, Backstroem, Dumont and Gopaluni 2020): a high-order
-/// ARX model gives the noise model, the record is filtered by its inverse, and an output-error model of the
-/// plant is fitted to what comes out; each is held against what it was in a healthy period. A plant that has
-/// changed is a mismatch, noise that has changed is a disturbance.
+/// Identifies the plant and the noise of a loop separately (Lu, Forbes, Loewen, Backstroem, Dumont and
+/// Gopaluni 2020): a high-order ARX model gives the noise model, the record is filtered by its inverse, and
+/// an output-error model of the plant is fitted to the filtered record. Each model is compared with that of a
+/// healthy period. A changed plant is a mismatch, changed noise is a disturbance.
 ///
-/// The plant is identified by what it differs from the model, with three filters a channel (channel_filters),
-/// so that the output-error model is linear in its coefficients. Where record and benchmark are long enough,
-/// one-class support vector machines that have learnt the models of windows of the benchmark judge those of
-/// the record (HealthyWindows). Where they are short there is one window in each, and plant, noise model and
-/// size of the noise are held against each other by the covariances of their coefficients
-/// (compare_models()), which is not the paper's. A CV with another plant has the source mpm, one with other
-/// noise ud, one with both mpm_ud.
+/// Here the difference between plant and model is identified, with three filters for each channel
+/// (channel_filters), so that the output-error model is linear in its coefficients. If record and benchmark
+/// are long enough, one-class support vector machines that have learnt the models of windows of the benchmark
+/// judge those of the record (HealthyWindows). If they are short, each is one window, and plant, noise model
+/// and size of the noise are compared by the covariances of their coefficients (compare_models()); this part
+/// is not in the paper. A CV with a changed plant has the source mpm, a CV with changed noise ud, a CV with
+/// both mpm_ud.
 class ArxOe final : public AssessmentMethod {
  public:
-  /// The requirements of the method say that there is a benchmark.
+  /// A benchmark exists, because the method requires one.
   explicit ArxOe(const AssessmentContext& context)
       : study_(context.study),
         options_(study_.assessment.of<ArxOeOptions>()),
@@ -152,14 +154,14 @@ class ArxOe final : public AssessmentMethod {
            (options_.form == ArxOeForm::automatic && loop.samples() >= kFewestWindows * rule_.window);
   }
 
-  /// Of covariances twice what the regressions need, so that variances can be compared as well; of windows
-  /// two, so that there is a second one in the benchmark.
+  /// With covariances, twice the samples that the regressions need, so that variances can be compared as
+  /// well. With windows, two windows, so that the benchmark has a second one.
   Eigen::Index fewest_samples_of(const AssessedLoop& loop) const {
     return 2 * (options_.form == ArxOeForm::windows ? rule_.window
                                                     : fewest_prewhitened_samples(columns_of(loop)));
   }
 
-  /// With 1 instead of 0 as the limit, as for covariances, and 0 for what is not judged.
+  /// The values have the limit 1 instead of 0, as for covariances, and are 0 for a part that is not judged.
   CvAssessment judge_windows(Eigen::Index cv, const AssessedLoop& loop, Assessment& assessment) const {
     const HealthyWindows::Outside of =
         windows_[static_cast<std::size_t>(cv)].outside(plant_and_noise(cv, loop));
@@ -206,8 +208,8 @@ class ArxOe final : public AssessmentMethod {
   const ArxOeOptions options_;
   const AssessedLoop& benchmark_;
   const WindowRule rule_;
-  std::vector<HealthyModel> healthy_;    ///< of each CV; none when the benchmark is too short
-  std::vector<HealthyWindows> windows_;  ///< likewise
+  std::vector<HealthyModel> healthy_;    ///< one for each CV; empty if the benchmark is too short
+  std::vector<HealthyWindows> windows_;  ///< one for each CV; empty if the benchmark is not judged by windows
 };
 
 }  // namespace

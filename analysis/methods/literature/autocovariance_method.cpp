@@ -27,8 +27,8 @@ namespace {
 enum class UnexplainedLoop : std::int8_t { disturbance, mismatch };
 
 struct AutocovarianceOptions {
-  double alpha = 0.01;   ///< of the tests, over all CVs
-  int largest_lag = 32;  ///< samples; the lags are 0, 1, 2, 4, ... up to it
+  double alpha = 0.01;   ///< level of the tests, divided among all CVs
+  int largest_lag = 32;  ///< samples; the lags are 0, 1, 2, 4, ... up to this
   UnexplainedLoop unexplained = UnexplainedLoop::disturbance;
 
   bool operator==(const AutocovarianceOptions&) const = default;
@@ -44,12 +44,13 @@ OptionKeys keys(AutocovarianceOptions& options) {
                       "`\"mismatch\"` is the choice of the paper, in which nothing else can be wrong")};
 }
 
-/// Families of mismatches that are looked at a second time, and how far around, in steps of the grid.
+/// The number of families that are refined a second time, and the range of this, in steps of the grid.
 constexpr std::size_t kRefined = 3;
 constexpr double kSecondStep = 0.25;
-/// Points to a step of the grid of a family: the distance of autocovariances has more than one minimum.
+/// Points for each step of the grid of a family, because the distance of autocovariances has more than one
+/// minimum.
 constexpr Eigen::Index kFiner = 4;
-/// An MV this near to a hard limit, in shares of its range, is at it.
+/// An MV counts as at a hard limit if it is this near to it, as a share of its range.
 constexpr double kAtLimit = 1e-6;
 constexpr double kIntervalStep = 0.01;  ///< first step to the end of an interval, share of the search
 
@@ -57,7 +58,7 @@ double chi_squared_limit(Eigen::Index freedom, double probability) {
   return chi_squared_upper_quantile(probability, static_cast<double>(freedom));
 }
 
-/// r' Sigma^-1 r.
+/// The squared distance r' Sigma^-1 r.
 class SquaredDistance {
  public:
   explicit SquaredDistance(const Eigen::MatrixXd& covariance) : root_(covariance) {}
@@ -71,36 +72,36 @@ class SquaredDistance {
   Eigen::LLT<Eigen::MatrixXd> root_;
 };
 
-/// The mismatches of one parameter of a channel, with the autocovariances that they give on the grid.
+/// The mismatches of one parameter of a channel, with their autocovariances at the points of the grid.
 struct GriddedFamily {
   Channel channel;
   MismatchFamily family;
-  Eigen::MatrixXd means;  ///< a column each point
+  Eigen::MatrixXd means;  ///< one column for each point
 };
 
-/// A mismatch that the autocovariances may be those of.
+/// A mismatch that may explain the autocovariances.
 struct FittedFamily {
   const GriddedFamily* of = nullptr;
   double x = 0.0, distance = kInfinity;
 };
 
 /// Plant-model mismatch from autocovariances (Wang, Simkoff, Baldea et al. 2018), a reconstruction from the
-/// abstract: the mismatch of an unconstrained linear MPC loop is that for which the theoretical
-/// autocovariances of the CVs are those of the record,
+/// abstract. The mismatch of an unconstrained linear MPC loop is the one whose theoretical autocovariances of
+/// the CVs match those of the record,
 ///
 ///   theta = argmin (c - c(theta))' Sigma(theta)^-1 (c - c(theta))
 ///
-/// with c = loop_autocovariance() and c(theta), Sigma(theta) of theoretical_autocovariance() and
-/// autocovariance_covariance(), at the lags 0, 1, 2, 4, ... The paper's additive mismatch of state-space
-/// matrices is here one parameter of one channel, its weights are here the covariances of what is compared,
-/// and what the setpoints and measured disturbances of the record do is computed, not modelled as noise. The
-/// noise is that of the benchmark.
+/// with c = loop_autocovariance() and c(theta), Sigma(theta) from theoretical_autocovariance() and
+/// autocovariance_covariance(), at the lags 0, 1, 2, 4, ... The paper has an additive mismatch of state-space
+/// matrices; here it is one parameter of one channel. The weights here are the inverse covariances of the
+/// compared values. The effect of the setpoints and measured disturbances of the record is computed, not
+/// modelled as noise. The noise is that of the benchmark.
 ///
-/// A CV is flagged when its part of c leaves that of the model by more than chi2 with alpha shared out to the
-/// CVs has it; the loop has a mismatch when with the best theta nothing is left, by chi2 with alpha.
+/// A CV is flagged if its part of c differs from that of the model by more than the limit of chi2 with alpha
+/// divided among the CVs. The loop has a mismatch if the best theta explains the rest, by chi2 with alpha.
 class Autocovariance final : public AssessmentMethod {
  public:
-  /// The requirements of the method say that there is a benchmark.
+  /// A benchmark exists, because the method requires one.
   explicit Autocovariance(const AssessmentContext& context)
       : context_(context),
         study_(context.study),
@@ -130,7 +131,7 @@ class Autocovariance final : public AssessmentMethod {
   }
 
  private:
-  /// Why the loops of this study have no linear theory; none: they have one.
+  /// Why the loops of this study have no linear theory; none if they have one.
   static std::optional<std::string> why_not(const Study& study) {
     if (study.controller.has_soft_limits())
       return "the controller holds CVs in ranges, and the loop is not linear";
@@ -166,17 +167,17 @@ class Autocovariance final : public AssessmentMethod {
     return std::nullopt;
   }
 
-  /// What is known of the loops, or of the windows of them, that are moved alike.
+  /// What is known of loops, or windows of loops, with the same moves from outside.
   struct Theory {
-    Eigen::MatrixXd d, y_set;  ///< what moves them
+    Eigen::MatrixXd d, y_set;  ///< signals that move the loops
     OutsideMoves moves;
     double noise_share = 2.0;
     Eigen::MatrixXd covariance;           ///< of the autocovariances, without a mismatch
-    std::vector<GriddedFamily> families;  ///< empty until a loop is to be explained
+    std::vector<GriddedFamily> families;  ///< empty until a loop has to be explained
   };
 
-  /// The theory of the loops that are moved as this one: kept for each window as long as they are moved
-  /// alike.
+  /// Sets `theory_` to the theory of the loops with the same moves as this one. The theory of each window is
+  /// kept as long as the moves stay the same.
   void learn(const AssessedLoop& loop) {
     const AssessedLoop& whole = loop.from_start();
     if (!linear_)
@@ -249,7 +250,7 @@ class Autocovariance final : public AssessmentMethod {
     }
   }
 
-  /// The best point of the grid of each family.
+  /// The best point of the grid for each family.
   std::vector<FittedFamily> on_grid(const Eigen::VectorXd& c, const SquaredDistance& distance) const {
     std::vector<FittedFamily> fits;
     for (const GriddedFamily& each : theory_->families) {
@@ -264,7 +265,7 @@ class Autocovariance final : public AssessmentMethod {
     return fits;
   }
 
-  /// The best mismatch of the family within `step` of where it is.
+  /// The best mismatch of the family within `step` of the fit.
   FittedFamily refined(const FittedFamily& fit, double step, const Eigen::VectorXd& c,
                        const SquaredDistance& distance) const {
     const SearchGrid& grid = fit.of->family.grid;
@@ -279,9 +280,9 @@ class Autocovariance final : public AssessmentMethod {
     return (grid.last - grid.first) / static_cast<double>(grid.points - 1);
   }
 
-  /// The best mismatch: of each family with the covariance of the model, since between two points of a grid
-  /// the distance falls from thousands to few, then of the best families with that of the best one. None when
-  /// no covariance has an inverse.
+  /// The best mismatch. First each family is refined with the covariance of the model, since between two
+  /// points of a grid the distance falls from thousands to a few. Then the best families are refined with the
+  /// covariance of the best one. None if one of these covariances has no inverse.
   std::optional<FittedFamily> best_mismatch(const Eigen::VectorXd& c) {
     if (theory_->families.empty())
       learn_families();
@@ -340,7 +341,7 @@ class Autocovariance final : public AssessmentMethod {
   std::vector<Eigen::Index> lags_;
   std::optional<LinearLoop> linear_;
   std::map<std::pair<Eigen::Index, Eigen::Index>, Theory> theories_;  ///< by first sample and samples
-  Theory* theory_ = nullptr;                                          ///< that of the loop in hand
+  Theory* theory_ = nullptr;                                          ///< theory of the current loop
 };
 
 }  // namespace

@@ -35,7 +35,8 @@ double single_confidence(const Badwe2009Options& options, std::size_t channels) 
   return 1.0 - (1.0 - options.confidence) / tests;
 }
 
-/// With fewer signals from outside than MVs their parts in the MVs cannot be told apart.
+/// If there are fewer signals from outside than MVs, the parts of the MVs that they drive are linearly
+/// dependent.
 NoiseFilter filter_of(const Badwe2009Record& record, const Badwe2009Options& options, std::size_t mvs) {
   if (options.filter != NoiseFilter::automatic)
     return options.filter;
@@ -47,7 +48,7 @@ double mean_square(const Eigen::MatrixXd& row) {
   return (row.array() - row.mean()).square().mean();
 }
 
-/// The correlations of one MV with all prediction errors, from signals without noise.
+/// Finds the correlations of one MV with all prediction errors, from signals without noise.
 class MvAssessment {
  public:
   MvAssessment(const Eigen::MatrixXd& e, const Eigen::MatrixXd& u, const Badwe2009Options& options,

@@ -50,7 +50,7 @@ struct Badwe2009Options {
 /// | y_sim  | y_sim    | ny x N | G0 (u, d), the prediction of A1.2, step 2                |
 /// | u      | u        | nu x N | MVs                                                      |
 /// | r      | external | nr x N | setpoints, measured disturbances; for the filter `external` only |
-/// |        | limits   | nu     | of the MVs                                               |
+/// |        | limits   | nu     | limits of the MVs                                        |
 struct Badwe2009Record {
   Eigen::MatrixXd y, y_sim, u, external;
   MvLimits limits;
@@ -75,8 +75,8 @@ enum class Badwe2009Status : std::int8_t {
 /// |----------|---------|-------------------------------------------------------------------------|
 /// | mv_use   | nu      | which MVs were evaluated, and why the others were not                   |
 /// | channels | ny x nu | by rows, see `channel`                                                  |
-/// | filter   |         | the one that was used, none or external for automatic                   |
-/// | unusable |         | output-error models without a usable status, which served as they were  |
+/// | filter   |         | the filter that was used; automatic becomes none or external            |
+/// | unusable |         | output-error models without a usable status, which were used anyway     |
 struct Badwe2009Result {
   Badwe2009Status status = Badwe2009Status::ok;
   std::vector<MvUse> mv_use;

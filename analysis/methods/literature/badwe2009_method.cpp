@@ -76,7 +76,8 @@ class Badwe2009 final : public AssessmentMethod {
   }
 
  private:
-  /// Setpoints of the optimizer follow from the measurements: they come from within the loop.
+  /// The signals from outside. Setpoints of the optimizer are not among them, because they follow from the
+  /// measurements.
   Eigen::MatrixXd external_signals(const AssessedLoop& loop) const {
     std::vector<Eigen::Index> cvs;
     for (const Eigen::Index cv : loop.setpoint_cvs())
@@ -98,7 +99,7 @@ class Badwe2009 final : public AssessmentMethod {
             {controller_.mv_hard.lower, controller_.mv_hard.upper}};
   }
 
-  /// Of `assess_badwe2009`: more samples than coefficients, and four for each lag.
+  /// The samples that `assess_badwe2009` needs: more than it has coefficients, and four for each lag.
   Eigen::Index samples_needed(const Badwe2009Record& record) const {
     const Eigen::Index inputs = std::max(record.u.rows() - 1, record.external.rows());
     const Eigen::Index each = options_.models.model == DecorrelationModel::fir
@@ -111,7 +112,7 @@ class Badwe2009 final : public AssessmentMethod {
     Assessment assessment;
     for (Eigen::Index cv = 0; cv < ny; ++cv) {
       bool flagged = false;
-      double largest = kNaN;  // none of an MV that is left out
+      double largest = kNaN;  // stays NaN if no MV is evaluated
       for (Eigen::Index mv = 0; mv < nu; ++mv) {
         const ChannelAssessment& channel = result.channel(cv, mv);
         const double strength = std::abs(channel.correlation.peak) / channel.correlation.band;
@@ -133,7 +134,8 @@ class Badwe2009 final : public AssessmentMethod {
   const Badwe2009Options& options_;
 };
 
-/// Shared out among all channels, the confidence is that of a loop; otherwise that of a channel or a lag.
+/// A confidence that is divided among all channels is that of a loop; otherwise it is that of a channel or a
+/// lag.
 std::optional<double> stated_false_alarms(const MethodOptions& of_methods) {
   const auto& options = of_methods.of<Badwe2009Options>();
   if (options.multiplicity != Multiplicity::channels)

@@ -17,9 +17,9 @@ namespace mpm {
 namespace {
 
 struct Badwe2010Options {
-  int smallest_order = 3, largest_order = 7;  ///< of the output-error models (3.3.2)
+  int smallest_order = 3, largest_order = 7;  ///< orders of the output-error models (3.3.2)
   DesignedOrderCriterion criterion = DesignedOrderCriterion::record_fit;
-  int max_iterations = 20;  ///< of the search for each model
+  int max_iterations = 20;  ///< iterations of the search for each model
 
   bool operator==(const Badwe2010Options&) const = default;
 };
@@ -52,7 +52,7 @@ DesignedOutputOptions options_of(const Badwe2010Options& study) {
   return options;
 }
 
-/// Why models of the largest order cannot be identified in the record of `cvs` CVs; none: they can.
+/// Why models of the largest order cannot be identified in the record of `cvs` CVs; none if they can.
 std::optional<std::string> too_short(Eigen::Index samples, Eigen::Index cvs,
                                      const DesignedOutputOptions& options) {
   const Eigen::Index largest = options.orders.back();
@@ -107,7 +107,7 @@ class Badwe2010 final : public AssessmentMethod {
     assessment.numbers.push_back({"order_dgk", static_cast<double>(mismatch.order), cv});
   }
 
-  /// What is concluded from the designed output of one CV.
+  /// Adds the verdict and the numbers that follow from the designed output of one CV.
   void judge(const Eigen::VectorXd& y, const Eigen::VectorXd& y0, const Eigen::VectorXd& y_set,
              Eigen::Index cv, Assessment& assessment) const {
     const double ivar = variance_index(y, y0, y_set);

@@ -22,10 +22,10 @@ double root_mean_square(const Eigen::Ref<const Eigen::VectorXd>& signal) {
   return std::sqrt(signal.squaredNorm() / static_cast<double>(signal.size()));
 }
 
-/// What all rows of S_d and of Delta G K are identified from.
+/// The inputs from which all rows of S_d and of Delta G K are identified.
 struct Inputs {
   Eigen::MatrixXd moving;           ///< the eps that move, deviations from the start of the record
-  std::vector<Eigen::Index> of_cv;  ///< the CV of each
+  std::vector<Eigen::Index> of_cv;  ///< CV of each row of `moving`
   Eigen::Index all;                 ///< ny
   double floor;                     ///< root mean square up to which a signal is 0
 };
@@ -41,7 +41,7 @@ Inputs moving_inputs(const Eigen::MatrixXd& deviations, double resolution) {
   return inputs;
 }
 
-/// Models of `target` of all orders, from its first `samples` samples.
+/// Models of all orders for `target`, fitted to its first `samples` samples.
 std::vector<OutputErrorFit> fitted(const Eigen::VectorXd& target, const Inputs& inputs,
                                    const std::vector<Eigen::Index>& orders, Eigen::Index delay,
                                    Eigen::Index samples, const DesignedOutputOptions& options) {
@@ -49,7 +49,8 @@ std::vector<OutputErrorFit> fitted(const Eigen::VectorXd& target, const Inputs& 
       .fit(target.head(samples), orders, delay);
 }
 
-/// The criterion of a model so that larger is better. `N` - `samples` samples were kept from it.
+/// The criterion of a model, signed so that larger is better. The last `N` - `samples` samples were kept for
+/// validation.
 double merit_of(const OutputErrorFit& found, const Eigen::VectorXd& target, const Inputs& inputs,
                 Eigen::Index samples, DesignedOrderCriterion criterion) {
   if (criterion == DesignedOrderCriterion::bic) {
@@ -63,14 +64,14 @@ double merit_of(const OutputErrorFit& found, const Eigen::VectorXd& target, cons
   return percent_fit(target.tail(kept), simulate(found.model, inputs.moving).tail(kept));
 }
 
-/// How many samples the models are found from that are compared.
+/// The number of samples to which the compared models are fitted.
 Eigen::Index samples_of_trials(Eigen::Index N, const DesignedOutputOptions& options) {
   if (options.criterion != DesignedOrderCriterion::validation_fit)
     return N;
   return N - std::max<Eigen::Index>(2, std::lround(options.validation_share * static_cast<double>(N)));
 }
 
-/// The model with a path for every eps; those that stand still act on nothing.
+/// The model with a path for every eps; the path of an eps that stands still is 0.
 PolynomialModel with_all_paths(const PolynomialModel& model, const Inputs& inputs) {
   PolynomialModel full = model;
   full.inputs.assign(static_cast<std::size_t>(inputs.all), InputPath{});

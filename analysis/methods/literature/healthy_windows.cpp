@@ -19,9 +19,9 @@ namespace mpm {
 namespace {
 
 constexpr std::uint64_t kMachineSeed = 47;
-constexpr double kLeastDiagonal = 1e-200;  ///< whose root and reciprocal are numbers
+constexpr double kLeastDiagonal = 1e-200;  ///< small, but with a finite root and reciprocal
 
-/// (I + R C R')^-1/2 x, by the factor of Cholesky.
+/// (I + R C R')^-1/2 x, by the Cholesky factor.
 Eigen::VectorXd standard_deviations(const Eigen::MatrixXd& R, const Eigen::MatrixXd& C,
                                     const Eigen::VectorXd& x) {
   Eigen::MatrixXd covariance = R * C * R.transpose();
@@ -63,7 +63,7 @@ HealthyWindows::HealthyWindows(const PlantAndNoise& period, const WindowRule& ru
   noises_ = machine_of(noises);
 }
 
-/// With e - X b_0 instead of e.
+/// The window of this number, with e - X b_0 instead of e.
 PlantAndNoise HealthyWindows::window_of(const PlantAndNoise& record, Eigen::Index number) const {
   const Eigen::Index first = number * rule_.step;
   const Eigen::MatrixXd X = record.X.middleRows(first, rule_.window);
@@ -76,7 +76,7 @@ Eigen::VectorXd HealthyWindows::plant_point(const PlantAndNoise& window, bool ow
     return Eigen::VectorXd::Zero(window.X.cols());
   const Eigen::MatrixXd& X = groups.X[0];
   Eigen::MatrixXd information = X.transpose() * X / groups.variance;
-  // An input that stands still in the window has the deviation 0.
+  // An input that stands still in the window gets the deviation 0.
   information.diagonal() = information.diagonal().array() * (1.0 + kLeastInformation) + kLeastDiagonal;
   const Eigen::LLT<Eigen::MatrixXd> factor(information);
   const Eigen::VectorXd b = factor.matrixL().solve(X.transpose() * groups.r / groups.variance);

@@ -17,8 +17,8 @@ namespace {
 
 using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
 
-/// Regressors whose first columns are those of a lower order: constant, terms of a fixed MO2, then lag by
-/// lag.
+/// Regressors in an order in which the first columns are those of a lower order: constant, terms of a fixed
+/// MO2, then lag by lag.
 class LagRegressors {
  public:
   /// `outputs` are the rows of y that explain the CV.
@@ -75,7 +75,7 @@ void require_record(const Matrix& y, const Matrix& r, const HighOrderArxOptions&
     throw InputError("references", "a value that is not finite", "finite values only");
 }
 
-/// Of each candidate order, so that smaller is better.
+/// A score of each candidate order; smaller is better.
 std::vector<double> scores(const LagRegressors& regressors, const Eigen::MatrixXd& targets, Eigen::Index side,
                            const NestedLeastSquares& fit, const HighOrderArxOptions& options) {
   const auto n = static_cast<double>(targets.rows());
@@ -89,7 +89,7 @@ std::vector<double> scores(const LagRegressors& regressors, const Eigen::MatrixX
   return result;
 }
 
-/// The mean squares on the end of the record of the models of its beginning.
+/// The mean square errors at the end of the record of models that are fitted to its beginning.
 std::vector<double> validation_losses(const LagRegressors& regressors, const Eigen::MatrixXd& targets,
                                       Eigen::Index side, const NestedLeastSquares& beginning,
                                       Eigen::Index validation, const HighOrderArxOptions& options) {
@@ -104,7 +104,7 @@ std::vector<double> validation_losses(const LagRegressors& regressors, const Eig
   return result;
 }
 
-/// Fills in the CVs `cvs`, whose regressors are the same.
+/// Fills in the results of the CVs `cvs`, which share their regressors.
 void fit_cvs(const std::vector<Eigen::Index>& cvs, const LagRegressors& regressors, const Matrix& y,
              const HighOrderArxOptions& options, HighOrderArx& result) {
   const Eigen::MatrixXd& A = regressors.matrix();

@@ -21,12 +21,12 @@
 namespace mpm {
 namespace {
 
-/// The probability that a loop without mismatch is flagged, shared out to all channels.
+/// The probability that a loop without mismatch is flagged, divided among all channels.
 constexpr double kLassoFalseAlarms = 0.01;
 
-/// How large lambda is.
+/// The rule for the size of lambda.
 enum class LassoPenalty : std::int8_t {
-  chance,  ///< a group that explains nothing enters with the probability kLassoFalseAlarms, shared out
+  chance,  ///< a group that explains nothing enters with the probability kLassoFalseAlarms, divided among all
   cross_validation,  ///< cross_validated_penalty(), as Kono and Koizumi have it
 };
 
@@ -46,16 +46,16 @@ OptionKeys keys(LassoOptions& options) {
 
 using Groups = std::vector<Eigen::MatrixXd>;
 
-/// What the lasso makes of one CV.
+/// The result of the lasso for one CV.
 struct LassoCv {
   double score = 0.0;
-  std::vector<std::size_t> selected;  ///< by the lasso, by column of G
-  std::vector<std::size_t> named;     ///< those of them with a mismatch
-  std::vector<double> ratios;         ///< of each channel over its critical value
-  PrewhitenedGroups refined;          ///< of the named channels, in their order
+  std::vector<std::size_t> selected;  ///< columns of G that the lasso selects
+  std::vector<std::size_t> named;     ///< selected columns that have a mismatch
+  std::vector<double> ratios;         ///< for each channel, over its critical value
+  PrewhitenedGroups refined;          ///< regression on the named channels, in their order
 };
 
-/// |Q_j'r|^2 of each group over what chance gives it with this probability.
+/// |Q_j'r|^2 of each group, over the value that chance exceeds with this probability.
 std::vector<double> entry_ratios(const PrewhitenedGroups& groups, double probability) {
   std::vector<double> ratios;
   for (std::size_t j = 0; j < groups.Q.size(); ++j)
@@ -63,7 +63,7 @@ std::vector<double> entry_ratios(const PrewhitenedGroups& groups, double probabi
   return ratios;
 }
 
-/// The groups that the lasso selects when each enters where chance has it enter with this probability.
+/// The groups that the lasso selects if each group that explains nothing enters with this probability.
 std::vector<std::size_t> selected_groups(const PrewhitenedGroups& groups, double probability) {
   std::vector<Eigen::Index> sizes;
   Eigen::VectorXd penalty(static_cast<Eigen::Index>(groups.Q.size()));
@@ -93,7 +93,7 @@ std::vector<std::size_t> selected_groups(const PrewhitenedGroups& groups, double
   return selected;
 }
 
-/// The groups that enter under the penalty that predicts best.
+/// The groups that enter under the penalty with the best predictions.
 std::vector<std::size_t> groups_by_cross_validation(const PrewhitenedGroups& groups) {
   const double lambda = cross_validated_penalty(groups.r, groups.Q);
   const std::vector<Eigen::VectorXd> b = penalised_coefficients(groups.r, groups.Q, lambda);
@@ -111,9 +111,10 @@ Groups groups_of(const Groups& all, const std::vector<std::size_t>& places) {
   return some;
 }
 
-/// The lasso shrinks what it selects, and what it so leaves of one channel draws in others that move like it.
-/// Of the selected channels those are named that explain, beside the others and with the noise model of what
-/// they leave, more than chance does; the weakest is dropped first. With cross-validation all are named.
+/// The lasso shrinks the channels that it selects. The part of a channel that this leaves unexplained brings
+/// in other channels with similar moves. So only those selected channels are named that explain, beside the
+/// others, more than chance does, with the noise model of the errors that they leave. The weakest channel is
+/// dropped first. With cross-validation all selected channels are named.
 LassoCv lasso_of(const Eigen::VectorXd& e, const Groups& filters, double probability, LassoPenalty penalty) {
   LassoCv result;
   const PrewhitenedGroups groups = prewhitened_groups(e, filters);
@@ -143,17 +144,17 @@ LassoCv lasso_of(const Eigen::VectorXd& e, const Groups& filters, double probabi
   return result;
 }
 
-/// L1 regression of the simulation errors on the inputs (Kono and Koizumi 2023): which channels of the model
-/// the record wants corrected, and by how much. A reconstruction from the abstract; ours are the groups, the
-/// prewhitening and the penalty.
+/// L1 regression of the simulation errors on the inputs (Kono and Koizumi 2023): finds the channels of the
+/// model that the record contradicts, and the size of their correction. A reconstruction from the abstract;
+/// the groups, the prewhitening and the penalty are our own.
 ///
 ///   min over b of  1/2 |r - sum_j Q_j b_j|^2 + sum_j lambda_j |b_j|
 ///   lambda_j^2 = m_j sigma^2 F_(1 - alpha/channels)(m_j, freedom)
 ///
-/// for each CV, with r and Q_j the simulation error and the responses of three filters of channel j, both
-/// prewhitened (PrewhitenedGroups). The penalty is that at which a group that explains nothing enters with
-/// the probability alpha = 1 % shared out to all channels of the loop, so that it needs neither
-/// cross-validation nor a benchmark; LassoPenalty has that of the paper.
+/// for each CV, where r is the simulation error and Q_j are the responses of three filters of channel j, both
+/// prewhitened (PrewhitenedGroups). With this penalty, a group that explains nothing enters with the
+/// probability alpha = 1 %, divided among all channels of the loop. So the penalty needs neither
+/// cross-validation nor a benchmark; LassoPenalty has the penalty of the paper as well.
 class Lasso final : public AssessmentMethod {
  public:
   explicit Lasso(const AssessmentContext& context)
@@ -225,13 +226,13 @@ class Lasso final : public AssessmentMethod {
         .front();
   }
 
-  /// The mismatch of one number that explains the simulation error best, of all channels that the lasso
-  /// selected. Three filters do not follow a mismatch to the last digit, and where the noise is small other
-  /// channels make up for that, so that the selection alone does not say which channel it is. Where one
-  /// number explains the error as well as the filters of all named channels do, by BIC, `found` names its
-  /// channel alone. Where it does not, the mismatch is that of the channel that explains most, with what the
-  /// others explain taken out of the error. None where nothing is named, and for a channel of a measured
-  /// disturbance.
+  /// The mismatch of one number that explains the simulation error best, among all channels that the lasso
+  /// selected. Three filters do not follow a mismatch exactly. If the noise is small, other channels
+  /// compensate for the rest, so the selection alone does not tell which channel is wrong. If one number
+  /// explains the error as well as the filters of all named channels do, by BIC, `found` then names only its
+  /// channel. If it does not, the mismatch is that of the channel that explains most, after the part that the
+  /// others explain is removed from the error. None if no channel is named, or if that channel has a measured
+  /// disturbance as its input.
   std::optional<NamedMismatch> surest_mismatch(Eigen::Index cv, LassoCv& found, const Eigen::VectorXd& e,
                                                const Groups& filters, const Eigen::MatrixXd& inputs) const {
     if (found.named.empty())

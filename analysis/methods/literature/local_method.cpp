@@ -16,17 +16,17 @@
 namespace mpm {
 namespace {
 
-/// The probability that a loop without mismatch is flagged, shared out to its CVs.
+/// The probability that a loop without mismatch is flagged, divided among its CVs.
 constexpr double kLocalFalseAlarms = 0.01;
 
 /// The parameter of each column of channel_gradients().
 constexpr std::array kGradientParameters{MismatchParameter::gain, MismatchParameter::time_constant,
                                          MismatchParameter::dead_time};
-/// What the parameter is in the model: factors of 1, no shift.
+/// The value of each parameter in the model: factors of 1, no shift.
 constexpr std::array kGradientNominal{1.0, 1.0, 0.0};
 
-/// One parameter of a channel as the local approach sees it: psi'r / |psi| over sigma, and the one step to
-/// its estimate.
+/// One parameter of a channel in the local approach: z = psi'r / (|psi| sigma), and the single step to its
+/// estimate with the standard deviation.
 struct LocalParameter {
   double z = 0.0;
   double step = 0.0, deviation = kInfinity;
@@ -42,21 +42,21 @@ LocalParameter local_parameter(const PrewhitenedGroups& groups, std::size_t chan
   return {product / (length * sigma), product / (length * length), sigma / length};
 }
 
-/// The local approach to the divergence of two models (Jiang, Huang and Shah 2009; Basseville 1998): the
-/// gradient of the prediction error with respect to the parameters of the model, at the model, has a mean of
-/// zero as long as the model holds, and one in the direction of the change when it does not. A
-/// reconstruction.
+/// The local approach to the divergence of two models (Jiang, Huang and Shah 2009; Basseville 1998). It uses
+/// the gradient of the prediction error with respect to the parameters of the model, at the model. The mean
+/// of this gradient is zero as long as the model holds, and points in the direction of the change if it does
+/// not. A reconstruction.
 ///
-/// With psi_jk = A dG_ij/dtheta_jk u_j, prewhitened by the autoregression A of the simulation error and freed
-/// of what the past of the error says (PrewhitenedGroups), and r the error itself after the same,
+/// Here psi_jk = A dG_ij/dtheta_jk u_j is prewhitened by the autoregression A of the simulation error, and
+/// the past of the error is projected out (PrewhitenedGroups). r is the error after the same steps,
 ///
 ///   zeta = Psi'r / sqrt(n),   chi2 = zeta' (sigma^2 Psi'Psi / n)^-1 zeta,   F = chi2 / rank Psi
 ///   z_jk = psi_jk'r / (sigma |psi_jk|),   theta_jk = theta0_jk + psi_jk'r / |psi_jk|^2
 ///
-/// F flags a CV, its part by the three parameters of a channel alone names the channel, and the largest
-/// |z_jk| the parameter. Because the past of the error has been taken out, sigma^2 Psi'Psi is the covariance
-/// of zeta also in closed loop. The size is one step of Gauss and Newton from the model: right for small
-/// mismatches, and too small an interval for large ones.
+/// F flags a CV. The part of F from the three parameters of one channel names the channel, and the largest
+/// |z_jk| names the parameter. Because the past of the error has been projected out, sigma^2 Psi'Psi is the
+/// covariance of zeta also in closed loop. The size is one Gauss-Newton step from the model: it is right for
+/// small mismatches, and its interval is too small for large ones.
 class Local final : public AssessmentMethod {
  public:
   explicit Local(const AssessmentContext& context) : study_(context.study) {}
@@ -97,7 +97,7 @@ class Local final : public AssessmentMethod {
       name_channels(cv, groups, worst, assessment);
   }
 
-  /// The channel that explains most alone, and the others that explain something beside all of them.
+  /// Names the channel that explains most alone, and channels that explain something beside all others.
   void name_channels(Eigen::Index cv, const PrewhitenedGroups& groups, bool worst,
                      Assessment& assessment) const {
     std::size_t surest = 0;

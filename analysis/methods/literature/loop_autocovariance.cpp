@@ -33,7 +33,7 @@ Eigen::MatrixXd convolved_rows(const Eigen::MatrixXd& h, const Eigen::VectorXd& 
   return rows;
 }
 
-/// u = x + f u with f(0) = 0.
+/// Solves u = x + f u with f(0) = 0.
 Eigen::VectorXd closed(const Eigen::VectorXd& f, const Eigen::VectorXd& x) {
   const Eigen::VectorXd reversed = f.reverse();
   Eigen::VectorXd u = x;
@@ -44,7 +44,7 @@ Eigen::VectorXd closed(const Eigen::VectorXd& f, const Eigen::VectorXd& x) {
   return u;
 }
 
-/// Column of a step response to its impulse response.
+/// Converts step responses, one row each, to impulse responses.
 Eigen::MatrixXd differences(const Eigen::MatrixXd& step_response, double size) {
   Eigen::MatrixXd impulse_response = step_response / size;
   const Eigen::Index n = step_response.cols() - 1;
@@ -52,7 +52,7 @@ Eigen::MatrixXd differences(const Eigen::MatrixXd& step_response, double size) {
   return impulse_response;
 }
 
-/// The study without any limit and with nothing that moves its loops.
+/// The study without hard limits, and without signals that move its loops.
 Study unlimited_study(const Study& study, Eigen::Index samples) {
   Study unlimited = study;
   unlimited.controller.mv_hard = Limits::none(study.mv_count());
@@ -68,8 +68,8 @@ void require_ok(const Trajectory& loop) {
     throw InputError("controller", "one without a solution when no limit is left", "one with");
 }
 
-/// What a channel that is another than in the model adds to the CVs when what moves the loop moves its MV so,
-/// were the channel that of the model: S_i D / (1 - Q_ji D), as long as that moves, ny x N.
+/// The effect on the CVs of a channel that differs from the model: S_i D / (1 - Q_ji D), ny x N. Its input is
+/// the move of MV `mv` that the loop would make if the channel were that of the model.
 struct AddedPath {
   Eigen::Index mv;
   Eigen::MatrixXd response;
@@ -87,13 +87,13 @@ std::optional<AddedPath> added_path(const LinearLoop& loop, const ChannelDiffere
   return AddedPath{changed->mv, convolved_rows(loop.s[i], closed(f, D))};
 }
 
-/// Adds what goes along the path to CVs, ny x n, when these MVs move.
+/// Adds the effect of these moves of the MVs along the path to the CVs, ny x n.
 void add_along(const std::optional<AddedPath>& path, const Eigen::MatrixXd& u, Eigen::MatrixXd& cvs) {
   if (path)
     cvs += convolved_rows(path->response, u.row(path->mv));
 }
 
-/// n of the CVs under an impulse in each w_l, ny x L.
+/// n of the CVs for an impulse in each w_l, ny x L.
 std::vector<Eigen::MatrixXd> noise_responses(const LinearLoop& loop, const std::optional<AddedPath>& path) {
   std::vector<Eigen::MatrixXd> responses = loop.noise_outputs;
   for (std::size_t l = 0; l < responses.size(); ++l)
@@ -139,7 +139,7 @@ Eigen::VectorXd all_covariances(const std::vector<Eigen::MatrixXd>& psi, Eigen::
   return g;
 }
 
-/// sum_t g(t + a) g(t + b) of a g that is 0 beyond its ends.
+/// sum_t g(t + a) g(t + b) for a g that is 0 beyond its ends.
 double overlap(const Eigen::VectorXd& g, Eigen::Index a, Eigen::Index b) {
   const Eigen::Index apart = std::abs(b - a);
   const Eigen::Index n = g.size() - apart;

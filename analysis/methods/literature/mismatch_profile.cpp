@@ -14,8 +14,8 @@
 namespace mpm {
 namespace {
 
-/// V(v) of what is left of e: the last Cholesky pivot of the products of the constant, its past and itself is
-/// the part of e that the others do not explain.
+/// V(v) for the error `left` after the mismatch v. The last Cholesky pivot of the products of a constant, the
+/// past of `left` and `left` itself is the part of `left` that the others do not explain.
 double noise_squares(const Eigen::VectorXd& left, Eigen::Index p) {
   const Eigen::Index n = left.size() - p;
   Eigen::MatrixXd columns(n, p + 2);

@@ -15,8 +15,8 @@ namespace mpm {
 /// | member       | meaning                                                                      |
 /// |--------------|------------------------------------------------------------------------------|
 /// | value        | as Mismatch::value: factor of gain or time constant, shift of the dead time  |
-/// | lower, upper | its interval by the likelihood ratio; the ends of the search where it ends there |
-/// | residual_sum | least squares that are left                                                  |
+/// | lower, upper | its interval by the likelihood ratio; it stops at an end of the search       |
+/// | residual_sum | least sum of squared residuals                                               |
 struct ProfiledMismatch {
   MismatchParameter parameter;
   double value, lower, upper;

@@ -7,8 +7,8 @@
 namespace mpm {
 namespace {
 
-constexpr int kGoldenSteps = 16;        ///< to 1/2000 of two intervals of the grid
-constexpr int kIntervalHalvings = 12;   ///< of the ends of an interval
+constexpr int kGoldenSteps = 16;        ///< reduces two intervals of the grid to 1/2000
+constexpr int kIntervalHalvings = 12;   ///< halvings for each end of an interval
 constexpr double kLargestShift = 10.0;  ///< samples
 
 }  // namespace

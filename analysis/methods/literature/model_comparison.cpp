@@ -25,7 +25,7 @@ double plant_distance(const PrewhitenedGroups& groups, const HealthyModel& befor
   return distance / groups.critical_ratio_of(groups.rank, probability);
 }
 
-/// With P = C^-1, (C + C_0)^-1 = P (P + P_0)^-1 P_0.
+/// Uses (C + C_0)^-1 = P (P + P_0)^-1 P_0 with P = C^-1.
 double noise_distance(const Eigen::VectorXd& v, const Eigen::VectorXd& v_before, double probability) {
   constexpr auto p = kHighestNoiseOrder;
   const NoiseEstimate now = noise_estimate(v, p), before = noise_estimate(v_before, p);

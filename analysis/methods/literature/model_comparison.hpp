@@ -16,7 +16,7 @@ struct PlantAndNoise {
 /// | symbol    | member      | shape | meaning                                    |
 /// |-----------|-------------|-------|--------------------------------------------|
 /// | b_0       | b           | m     | by `refined_groups`                        |
-/// | C_0       | covariance  | m x m | of b_0; large along what the period does not determine |
+/// | C_0       | covariance  | m x m | of b_0; large in directions that the period leaves open |
 /// | v         | v           | N     | noise                                      |
 /// | p_0       | order       |       | of its autoregression, by BIC              |
 /// | sigma_0^2 | variance    |       | of its innovations                         |

@@ -17,7 +17,7 @@ namespace mpm {
 namespace {
 
 struct MqiChannelsOptions {
-  double tolerance = 0.85;  ///< a submodel with 1/rho below it is worse than none
+  double tolerance = 0.85;  ///< a submodel with 1/rho below it is worse than no submodel
 
   bool operator==(const MqiChannelsOptions&) const = default;
 };
@@ -29,17 +29,17 @@ OptionKeys keys(MqiChannelsOptions& options) {
 }
 
 /// Model quality with one submodel left out (Li, Song, Zhang, Ye and Yang 2017), a reconstruction from the
-/// abstract: the submodel of channel (i, j) is moved to the disturbance channel, that is, what it says is no
-/// longer predicted by the model but by the model of the disturbance, and the model quality index of the CV
-/// is computed again. Innovations of the least BIC autoregression stand for the errors of one-step
+/// abstract. The submodel of channel (i, j) is moved to the disturbance channel: its output is then predicted
+/// by the model of the disturbance instead of by the model. Then the model quality index of the CV is
+/// computed again. Innovations of the autoregression of least BIC stand for the errors of one-step
 /// predictions with the best disturbance model,
 ///
 ///   e^p_i = innovations of y_i - sum_l G0_il u_l,    e^p_ij = innovations of y_i - sum_(l != j) G0_il u_l
 ///   rho_ij = MQI_i without submodel j / MQI_i = sum (e^p_i)^2 / sum (e^p_ij)^2
 ///
-/// because the disturbance innovations e^d of (2.4) stand in both indices. A submodel that is right predicts
-/// what no disturbance model can, and rho is below 1; above 1 the model is better without it. A channel is
-/// named when 1/rho lies below the tolerance.
+/// because both indices contain the disturbance innovations e^d of (2.4). A correct submodel predicts what no
+/// disturbance model can, so rho is below 1. If rho is above 1, the model is better without the submodel. A
+/// channel is named if 1/rho lies below the tolerance.
 class MqiChannels final : public AssessmentMethod {
  public:
   explicit MqiChannels(const AssessmentContext& context)

@@ -33,8 +33,7 @@ void require_arguments(const Signal& eps1, const Signal& eps2, Eigen::Index min_
     throw InputError("largest lag", fmt::format("{}", max_lag), fmt::format("0 to {}", N / 4));
 }
 
-/// sum_m r_11(m) r_22(m) over the lags of both, with the weights of Bartlett's window, which keep it
-/// positive.
+/// sum_m r_11(m) r_22(m) over the lags of both. The weights of Bartlett's window keep it positive.
 double bartlett_sum(const Eigen::VectorXd& r_11, const Eigen::VectorXd& r_22) {
   const Eigen::Index window = r_11.size() - 1;
   double sum = 0.0;

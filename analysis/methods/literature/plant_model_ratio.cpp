@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kImpulseTimes = 30.0;  ///< residence times after which an impulse response has died down
 
-/// sum_k h(k) e^(-jwkTs) of an impulse response.
+/// sum_k h(k) e^(-jwkTs) for an impulse response h.
 std::complex<double> sampled_response(const Eigen::VectorXd& impulse_response, double angle) {
   std::complex<double> sum = 0.0;
   for (Eigen::Index k = 0; k < impulse_response.size(); ++k)
@@ -34,7 +34,8 @@ Eigen::VectorXcd plant_model_ratio(const TransferFunction& channel, double sampl
     throw InputError("coefficients of a plant-model ratio", fmt::format("{}", coefficients.size()),
                      fmt::format("{}", kChannelFilters));
   const double times = kImpulseTimes * std::max(channel.residence_time(), sample_time) + channel.dead_time();
-  // Inputs count as deviations from their first sample: the impulse is the second one, in all responses.
+  // Inputs count as deviations from their first sample, so the impulse is at the second sample, for all
+  // responses.
   Eigen::VectorXd impulse = Eigen::VectorXd::Zero(2 + static_cast<Eigen::Index>(times / sample_time));
   impulse(1) = 1.0;
   const Eigen::VectorXd of_model = channel_response(channel, sample_time, impulse);

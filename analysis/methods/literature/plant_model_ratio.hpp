@@ -21,7 +21,7 @@ namespace mpm {
 /// |--------|---------------|-------|---------------------------------|
 /// | G0     | channel       |       |                                 |
 /// | Ts     | sample_time   | 1     | time unit of the channel        |
-/// | b      | coefficients  | 3     | of its filters                  |
+/// | b      | coefficients  | 3     | coefficients of its filters     |
 /// | w      | frequencies   | n     | rad / time unit, up to pi / Ts  |
 ///
 /// The sampled responses are sums over impulse responses of 30 residence times and the dead time.

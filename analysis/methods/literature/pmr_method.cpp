@@ -29,9 +29,9 @@ namespace {
 enum class RatioInstruments : std::int8_t { outside, setpoints };
 
 struct PmrOptions {
-  double alpha = 0.01;  ///< share of loops without mismatch that are flagged at most
+  double alpha = 0.01;  ///< largest share of loops without mismatch that are flagged
   RatioInstruments instruments = RatioInstruments::outside;
-  /// Of the regression of the MVs on the signals from outside.
+  /// Options of the regression of the MVs on the signals from outside.
   DecorrelationOptions drive{.fir_length = 10, .fir_pole = 0.9};
 
   bool operator==(const PmrOptions&) const = default;
@@ -52,20 +52,20 @@ OptionKeys keys(PmrOptions& options) {
 }
 
 /// The plant-model ratio (Selvanathan and Tangirala 2010; Kaw, Tangirala and Karimi 2014; Mittermaier, le
-/// Roux and Craig 2024), a reconstruction from the abstracts: G(jw)/G0(jw) of each channel, estimated in
-/// closed loop from what signals from outside of the loop make it do.
+/// Roux and Craig 2024), a reconstruction from the abstracts. It estimates G(jw)/G0(jw) of each channel in
+/// closed loop, from the moves that signals from outside of the loop cause.
 ///
 ///   u_o = V r                          what they make of the MVs (externally_driven), in two stages
 ///   e   = (P - 1) G0 u_o + n,          n = (G - G0)(u - u_o) + v does not depend on r
 ///   P   = 1 + sum_k b_k L_k / G0       plant_model_ratio()
 ///
-/// with e = y - y_sim of a CV, r the signals from outside and L_k the filters of the channel, a smooth P of
-/// three coefficients: with a few steps in r a free one at each frequency is not to be had. A CV is flagged
-/// when prewhitened_test() refuses b = 0 of all its channels together, with alpha shared out to the CVs: the
-/// ratio is not 1. Nothing in u_o follows the noise, so that the past of e need not be taken out of it, as
-/// PrewhitenedGroups does. The signatures of gain, time constant and dead time are each fitted over all
-/// frequencies, weighted by excitation and noise, as profiled_mismatches() of u_o does it in the domain of
-/// time; the one that explains most, of all channels of the MVs, names channel, parameter and size.
+/// with e = y - y_sim of a CV, r the signals from outside and L_k the filters of the channel. P is smooth,
+/// with three coefficients: a few steps in r cannot determine a free value at each frequency. A CV is flagged
+/// if prewhitened_test() rejects b = 0 for all its channels together, that is, a ratio of 1, with alpha
+/// divided among the CVs. No part of u_o follows the noise, so the past of e need not be projected out as in
+/// PrewhitenedGroups. The signatures of gain, time constant and dead time are each fitted over all
+/// frequencies, weighted by excitation and noise; profiled_mismatches() of u_o does this in the time domain.
+/// The signature that explains most, among all channels of the MVs, names channel, parameter and size.
 class PlantModelRatio final : public AssessmentMethod {
  public:
   explicit PlantModelRatio(const AssessmentContext& context)
@@ -92,7 +92,7 @@ class PlantModelRatio final : public AssessmentMethod {
   }
 
  private:
-  /// u_o, and after it the MDs, which come from outside: as inputs_until().
+  /// u_o, followed by the MDs, which come from outside; otherwise as inputs_until().
   Eigen::MatrixXd driven_inputs(const AssessedLoop& loop, const Eigen::MatrixXd& r) const {
     const AssessedLoop& whole = loop.from_start();
     Eigen::MatrixXd inputs = inputs_until(loop);
@@ -126,7 +126,7 @@ class PlantModelRatio final : public AssessmentMethod {
       add_channel(*named, e, filters[static_cast<std::size_t>(named->channel.mv)], assessment);
   }
 
-  /// The signature that explains most, of all channels of the CV with an MV; none without one that moves.
+  /// The signature that explains most, among all channels of the CV with an MV; none if no MV moves.
   std::optional<NamedMismatch> best_signature(Eigen::Index cv, const Eigen::VectorXd& e,
                                               const std::vector<Eigen::MatrixXd>& filters,
                                               const Eigen::MatrixXd& inputs) const {

@@ -15,16 +15,16 @@
 namespace mpm {
 namespace {
 
-/// Degrees of freedom that must be left.
+/// The fewest degrees of freedom that must remain.
 constexpr Eigen::Index kFewestFreedom = 20;
-/// A direction of a group counts when this share of its length is left outside of the past of e.
+/// A direction of a group counts if this share of its length remains after the past of e is projected out.
 constexpr double kOwnShare = 1e-6;
-/// Turns of the noise model with the groups: the last moves the coefficients by little.
+/// Iterations of the noise model with the groups; the last one changes the coefficients only a little.
 constexpr int kTurns = 3;
 
 using Matrices = std::vector<Eigen::MatrixXd>;
 
-/// Orthonormal columns that span those of X, scaled to unit norm first.
+/// Orthonormal columns that span the columns of X, which are first scaled to unit norm.
 Eigen::MatrixXd orthonormal_columns(Eigen::MatrixXd X) {
   if (X.cols() == 0)
     return X;
@@ -54,7 +54,7 @@ Eigen::MatrixXd joined_groups(const Matrices& matrices, Eigen::Index rows, std::
 
 constexpr auto kAll = static_cast<std::size_t>(-1);
 
-/// A constant and the last p samples of v, for the samples after the first kHighestNoiseOrder.
+/// A constant and the last p samples of v, for the samples after the first kHighestNoiseOrder ones.
 Eigen::MatrixXd constant_and_past(const Eigen::VectorXd& v, Eigen::Index p) {
   const Eigen::Index n = v.size() - kHighestNoiseOrder;
   Eigen::MatrixXd past(n, p + 1);
@@ -64,7 +64,8 @@ Eigen::MatrixXd constant_and_past(const Eigen::VectorXd& v, Eigen::Index p) {
   return past;
 }
 
-/// A X of each column; the filter has forgotten its start after kHighestNoiseOrder samples, which are cut.
+/// A X, column by column. The first kHighestNoiseOrder samples, in which the filter forgets its start, are
+/// cut.
 Eigen::MatrixXd prewhitened_columns(const NoiseModel& noise, const Eigen::MatrixXd& X) {
   Eigen::MatrixXd result(X.rows() - kHighestNoiseOrder, X.cols());
   for (Eigen::Index column = 0; column < X.cols(); ++column)
@@ -100,7 +101,7 @@ PrewhitenedGroups groups_about(const Eigen::VectorXd& v, const Eigen::Ref<const 
   for (const Eigen::MatrixXd& X : groups) {
     const Eigen::MatrixXd filtered = prewhitened_columns(result.noise, X);
     Eigen::MatrixXd own = without_past(filtered);
-    // What rounding leaves of a column that the past explains is not a regressor.
+    // If the past explains a column, its rest is only rounding and not a regressor.
     for (Eigen::Index column = 0; column < own.cols(); ++column)
       if (!(own.col(column).norm() > kOwnShare * filtered.col(column).norm()))
         own.col(column).setZero();

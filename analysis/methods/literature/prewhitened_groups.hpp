@@ -26,7 +26,7 @@ namespace mpm {
 ///
 /// | symbol  | member   | shape         | meaning                                                      |
 /// |---------|----------|---------------|--------------------------------------------------------------|
-/// | A       | noise    |               | 1/D of it                                                    |
+/// | A       | noise    |               | D of this noise model 1/D                                    |
 /// | r       | r        | n             | A e without constant and past; n = N - `kHighestNoiseOrder`  |
 /// | A X_j   | X        | n x m_j each  | the same of the regressors                                   |
 /// | Q_j     | Q        | n x m_j' each | orthonormal columns that span X_j                            |

@@ -18,17 +18,17 @@ namespace {
 
 enum class SunIndex : std::int8_t { imqi, mqi };
 enum class SunNoise : std::int8_t { integrated, benchmark, white };
-/// By what one of several orders of the ARX model is chosen.
+/// The criteria by which one of several orders of the ARX model can be chosen.
 constexpr std::array kSunCriteria{OrderCriterion::aic, OrderCriterion::bic, OrderCriterion::validation_loss};
 
 struct SunOptions {
-  double tolerance = 0.85;  ///< MQI and iMQI below it show a poor model (2.4.2)
+  double tolerance = 0.85;  ///< MQI and iMQI below this show a poor model (2.4.2)
   SunIndex index = SunIndex::imqi;
-  std::vector<int> orders{20};          ///< MO1 of (2.1); of several one is chosen for each CV
+  std::vector<int> orders{20};          ///< MO1 of (2.1); one of several is chosen for each CV
   int setpoint_order = 0;               ///< MO2 of (2.1); 0: as MO1
   std::size_t criterion = 0;            ///< place in kSunCriteria
   bool own_outputs = false;             ///< AO of (2.1) is diagonal
-  bool measured_disturbances = false;   ///< they stand beside the setpoints in (2.1)
+  bool measured_disturbances = false;   ///< MDs are added to the setpoints in (2.1)
   bool correct_for_parameters = false;  ///< sums of squares of e^d over n - p instead of n
   SunNoise noise = SunNoise::integrated;
   double noise_filter = 0.7;  ///< c of `integrated`
@@ -85,15 +85,15 @@ ModelQualityOptions quality_options(const SunOptions& sun) {
   return options;
 }
 
-/// Q_y of (2.4), as the controller's objective has it.
+/// Q_y of (2.4), in the convention of the controller's objective.
 Eigen::VectorXd weights_of(const MpcOptions& controller) {
   return controller.weight_convention == WeightConvention::squared
              ? Eigen::VectorXd(controller.setpoint_weight.cwiseAbs2())
              : controller.setpoint_weight;
 }
 
-/// Why there is no noise model: it should come from a benchmark that is not known, or that is shorter than
-/// three times the order of the autoregression (autoregressive_noise()).
+/// Why there is no noise model: it should come from a benchmark, which is not known or shorter than three
+/// times the order of the autoregression (autoregressive_noise()). None if there is one.
 std::optional<std::string> unmet_noise(const SunOptions& sun, const AssessmentContext& context) {
   if (sun.noise != SunNoise::benchmark)
     return std::nullopt;
@@ -105,7 +105,7 @@ std::optional<std::string> unmet_noise(const SunOptions& sun, const AssessmentCo
   return std::nullopt;
 }
 
-/// G_d0 of each CV; there must be one.
+/// G_d0 of each CV; unmet_noise() must be none.
 std::vector<NoiseModel> noise_models(const SunOptions& sun, const AssessmentContext& context) {
   std::vector<NoiseModel> models(static_cast<std::size_t>(context.study.cv_count()));
   if (sun.noise == SunNoise::integrated)
@@ -118,7 +118,7 @@ std::vector<NoiseModel> noise_models(const SunOptions& sun, const AssessmentCont
   return models;
 }
 
-/// The signals that act on the loop from outside, a row each.
+/// The signals that act on the loop from outside, one row each.
 Eigen::MatrixXd references_of(const AssessedLoop& loop, bool measured_disturbances) {
   const std::vector<Eigen::Index> cvs = loop.setpoint_cvs();
   const auto setpoints = static_cast<Eigen::Index>(cvs.size());
@@ -156,7 +156,7 @@ class Sun final : public AssessmentMethod {
   }
 
  private:
-  /// A CV that is held in a range has no setpoint that its moves could follow: nothing is said about it.
+  /// A CV in a range has no setpoint to explain its moves, so it gets no verdict.
   void add_cv(Eigen::Index cv, bool has_setpoint, const ModelQuality& quality, Assessment& assessment) const {
     const double imqi = quality.imqi(cv);
     const double index = sun_.index == SunIndex::imqi ? imqi : imqi * imqi;
@@ -172,7 +172,8 @@ class Sun final : public AssessmentMethod {
         {"order", static_cast<double>(quality.orders[static_cast<std::size_t>(cv)]), cv});
   }
 
-  /// By MQI; without weights of the CVs (a range MPC) by the worst CV, as 2.4.2 looks at each alone.
+  /// Judges the loop by MQI. If the CVs have no weights (a range MPC), it goes by the worst CV, as 2.4.2
+  /// looks at each alone.
   void judge_loop(double mqi, Assessment& assessment) const {
     assessment.numbers.push_back({"mqi", mqi});
     if (std::isfinite(mqi)) {

@@ -14,8 +14,9 @@
 namespace mpm {
 namespace {
 
-/// Smallest eigenvalue of a covariance matrix that counts as above 0, as a share of its entries: they carry
-/// rounding errors of some 1e-16 times the square root of the length, 1e-14 for the longest records.
+/// The smallest eigenvalue of a covariance matrix that counts as above 0, as a share of its entries. The
+/// entries carry rounding errors of about 1e-16 times the square root of the length: 1e-14 for the longest
+/// records.
 constexpr double kSmallestEigenvalue = 1e-13;
 
 void require_errors(const char* name, const Eigen::Ref<const Eigen::MatrixXd>& errors) {
@@ -33,7 +34,7 @@ Eigen::MatrixXd covariance(const Eigen::Ref<const Eigen::MatrixXd>& errors) {
   return centred * centred.transpose() / static_cast<double>(errors.cols() - 1);
 }
 
-/// Standard deviation of each CV; 0 for one that stands still to rounding.
+/// Standard deviation of each CV; 0 for a CV that stands still up to rounding.
 Eigen::VectorXd deviations(const Eigen::Ref<const Eigen::MatrixXd>& errors,
                            const Eigen::MatrixXd& covariance) {
   Eigen::VectorXd result = covariance.diagonal().cwiseSqrt();
@@ -45,7 +46,7 @@ Eigen::VectorXd deviations(const Eigen::Ref<const Eigen::MatrixXd>& errors,
   return result;
 }
 
-/// Whether the CVs, each in units of its deviation, are linearly dependent.
+/// Are the CVs, each in units of its standard deviation, linearly dependent?
 bool is_singular(const Eigen::MatrixXd& correlation) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation, Eigen::EigenvaluesOnly);
   return !(solver.eigenvalues()(0) > kSmallestEigenvalue);
@@ -57,7 +58,8 @@ VariabilityChange change_of(const Interval& limits) {
   return limits.upper < 1.0 ? VariabilityChange::better : VariabilityChange::none;
 }
 
-/// The direction p with its largest entry above 0: an eigenvector has no sign of its own.
+/// The direction p with unit length and its largest entry above 0, since an eigenvector has no sign of its
+/// own.
 Eigen::VectorXd with_unit_length(const Eigen::VectorXd& p) {
   Eigen::Index largest = 0;
   p.cwiseAbs().maxCoeff(&largest);
@@ -73,7 +75,7 @@ VariabilityDirection judge_direction(double mu, const Eigen::VectorXd& p,
   direction.mu = mu;
   direction.p = with_unit_length(p);
   direction.f_benchmark = autocorrelation_factor(benchmark.transpose() * direction.p, options.largest_lag);
-  // Where nothing moves, only rounding errors would be correlated.
+  // If nothing moves, only rounding errors would be correlated.
   direction.f_monitored =
       mu > 0.0 ? autocorrelation_factor(monitored.transpose() * direction.p, options.largest_lag) : 1.0;
   const VarianceSample of_benchmark{benchmark.cols(), direction.f_benchmark};
@@ -122,7 +124,7 @@ VariabilityComparison compare_variability(const Eigen::Ref<const Eigen::MatrixXd
   const Eigen::VectorXd deviation = deviations(benchmark, covariance_benchmark);
   if (deviation.minCoeff() == 0.0)
     return result;
-  // In units of the benchmark's deviations, so that CVs of very different units hide nothing.
+  // In units of the benchmark's deviations, so that the units of the CVs do not hide a dependence.
   const Eigen::MatrixXd to_unit = deviation.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd correlation = to_unit * covariance_benchmark * to_unit;
   if (is_singular(correlation))

@@ -17,7 +17,7 @@ namespace {
 
 struct YuQinOptions {
   VariabilityOptions comparison;
-  int first_sample = 0;  ///< at which both periods begin; leaves out how a loop starts
+  int first_sample = 0;  ///< start of both periods; leaves out the start of a loop
 
   bool operator==(const YuQinOptions&) const = default;
 };
@@ -56,12 +56,12 @@ std::vector<Eigen::Index> common_setpoint_cvs(const AssessedLoop& a, const Asses
   return common;
 }
 
-/// When every direction is worse, every cosine is 1. The worst direction then says which CV comes first.
+/// If every direction is worse, every cosine is 1. The worst direction then decides which CV comes first.
 constexpr double kTieBreak = 1e-6;
 
 class YuQin final : public AssessmentMethod {
  public:
-  /// The requirements of the method say that there is a benchmark.
+  /// A benchmark exists, because the method requires one.
   YuQin(const YuQinOptions& options, const AssessmentContext& context)
       : options_(options.comparison), first_(options.first_sample), benchmark_(*context.benchmark) {
     options_.validate();
@@ -113,7 +113,7 @@ class YuQin final : public AssessmentMethod {
   const AssessedLoop& benchmark_;
 };
 
-/// Limits that hold for the directions that the data choose.
+/// The method with limits that hold for the directions that the data choose.
 std::unique_ptr<AssessmentMethod> with_limits_of_largest_root(const AssessmentContext& context) {
   auto options = context.study.assessment.of<YuQinOptions>();
   options.comparison.limits = VariabilityLimits::largest_root;
@@ -143,7 +143,7 @@ AssessmentMethodInfo yu_qin_method() {
         return std::make_unique<YuQin>(context.study.assessment.of<YuQinOptions>(), context);
       },
       option_table<YuQinOptions>(keys, "options of the method of Yu and Qin"),
-      // A loop is flagged by the lower one of the two ends of an interval.
+      // A loop is flagged if the lower of the two limits is above 1, so half of the error probability counts.
       [](const MethodOptions& options) {
         return 0.5 * (1.0 - options.of<YuQinOptions>().comparison.confidence);
       },
