@@ -67,8 +67,8 @@ struct AssessedLoop {
 
 /// A loop of `study` as the methods see it. Its records `loop` (recorded()) must start at the operating point
 /// `point`, and the loop must have run to its end. The setpoint of a CV in a range is
-/// optimizer_steady_state() if `study.assessment.setpoints` is that of the optimizer and the controller has
-/// targets; otherwise NaN.
+/// optimizer_steady_state() if `study.assessment.setpoints` is AssessmentSetpoints::optimizer and the
+/// controller has targets; otherwise NaN.
 AssessedLoop assessed_loop(const Study& study, const OperatingPoint& point, const Trajectory& loop);
 
 /// Puts the rows of `signals` (ny x N) of CVs that integrate behind their washout, which starts at the first

@@ -27,7 +27,7 @@ constexpr double kLassoFalseAlarms = 0.01;
 /// The rule for the size of lambda.
 enum class LassoPenalty : std::int8_t {
   chance,  ///< a group that explains nothing enters with the probability kLassoFalseAlarms, divided among all
-  cross_validation,  ///< cross_validated_penalty(), as Kono and Koizumi have it
+  cross_validation,  ///< cross_validated_penalty(), the rule of Kono and Koizumi
 };
 
 struct LassoOptions {

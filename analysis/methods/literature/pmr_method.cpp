@@ -149,7 +149,7 @@ class PlantModelRatio final : public AssessmentMethod {
     return named;
   }
 
-  /// The channel with its ratio, when no other channel of the CV is wrong.
+  /// Adds the named channel and the signature of its ratio, as if no other channel of the CV were wrong.
   void add_channel(const NamedMismatch& named, const Eigen::VectorXd& e, const Eigen::MatrixXd& filters,
                    Assessment& assessment) const {
     const auto [cv, mv] = named.channel;

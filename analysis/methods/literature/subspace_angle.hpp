@@ -13,7 +13,7 @@ namespace mpm {
 /// | P           | `directions` | columns that span it, linearly independent     | ny x m | -    |
 /// | cos theta_k | result       | 1 for an axis in it, 0 for one at right angles | ny     | -    |
 ///
-/// 0 for every axis when there are no directions (m = 0).
+/// 0 for every axis if there are no directions (m = 0).
 /// @throws InputError for more directions than axes or values that are not finite
 Eigen::VectorXd subspace_cosines(const Eigen::Ref<const Eigen::MatrixXd>& directions);
 
