@@ -8,13 +8,14 @@
 #include "base/error.hpp"
 #include "base/non_finite.hpp"
 
-// Choices among candidates by a number that may not be one. Every choice of the analysis is made here, so
-// that none points at nothing.
+// Choices among candidates by a number that may be NaN. The analysis makes every such choice here, so that no
+// choice points past the end of its candidates.
 
 namespace mpm {
 
-/// The place of the candidate with the largest `value`, of several the first: an iterator into `candidates`.
-/// NaN and -infinity make no candidate; the end where none is left. For the smallest value negate it.
+/// Returns an iterator to the candidate with the largest `value`, the first of them if several are equal.
+/// Candidates whose value is NaN or -infinity do not count; if no other is left, returns the end. To find the
+/// smallest value, negate it.
 template <class Candidates, class Value = std::identity>
 auto best_candidate(const Candidates& candidates, Value value = {}) {
   const auto end = std::end(candidates);
@@ -28,8 +29,8 @@ auto best_candidate(const Candidates& candidates, Value value = {}) {
   return best;
 }
 
-/// The same if a candidate is required. Throws InputError, with the name of the values, if no candidate is
-/// left.
+/// best_candidate() where a candidate is required. Throws InputError, with the name of the values, if no
+/// candidate is left.
 template <class Candidates, class Value = std::identity>
 auto required_best_candidate(const std::string& values, const Candidates& candidates, Value value = {}) {
   const auto best = best_candidate(candidates, value);

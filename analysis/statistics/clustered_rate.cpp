@@ -15,7 +15,7 @@ namespace {
 
 struct Totals {
   double sum = 0.0;
-  std::int64_t count = 0, occupied = 0;  ///< trials, clusters with one
+  std::int64_t count = 0, occupied = 0;  ///< trials, and clusters that have any
 
   double share() const { return sum / static_cast<double>(count); }
 };
@@ -61,7 +61,7 @@ void require_sums(std::span<const std::vector<ClusterSum>> strata) {
 
 namespace {
 
-/// clustered_mean() with a variance of the mean for another reason.
+/// clustered_mean() with a `further` variance of the mean, as in clustered_rate().
 Estimate mean_with(std::span<const std::vector<ClusterSum>> strata, double confidence, double further) {
   require_sums(strata);
   double hits = 0.0, variance = 0.0;

@@ -13,7 +13,8 @@
 namespace mpm {
 namespace {
 
-/// What is meant to be whole, such as 20 times 0.05, is not lost by rounding.
+/// Relative margin that keeps rounding from losing a product that is meant to be whole, such as 20 times
+/// 0.05.
 constexpr double kRounding = 1e-12;
 
 void require_false_alarms(double false_alarms) {
@@ -21,7 +22,7 @@ void require_false_alarms(double false_alarms) {
     throw InputError("rate of false alarms", fmt::format("{}", false_alarms), "a number between 0 and 1");
 }
 
-/// n + 1 - k = floor((n + 1) a): how many places from the top, 0 for none.
+/// n + 1 - k = floor((n + 1) a): the place of the threshold counted from the top; 0 if there is no threshold.
 std::int64_t places_from_top(std::int64_t count, double false_alarms) {
   return static_cast<std::int64_t>(
       std::floor(static_cast<double>(count + 1) * false_alarms * (1.0 + kRounding)));

@@ -44,7 +44,7 @@ CentredSums centred_sums(const Signal& x, const Signal& y) {
   mean_x /= n;
   mean_y /= n;
 
-  // Local sums stay in registers; those of the returned struct would not.
+  // Local sums stay in registers; the members of the returned struct would not.
   double xx = 0.0;
   double xy = 0.0;
   double yy = 0.0;

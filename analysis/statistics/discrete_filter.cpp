@@ -21,7 +21,7 @@ void require_monic(const Eigen::Ref<const Eigen::VectorXd>& a) {
     throw InputError("monic polynomial", "a coefficient that is not finite", "finite coefficients");
 }
 
-/// Roots in z: those of z^n + a_1 z^(n-1) + ... + a_n.
+/// Returns the roots in z, which are the roots of z^n + a_1 z^(n-1) + ... + a_n.
 Eigen::VectorXcd roots(const Eigen::Ref<const Eigen::VectorXd>& a) {
   if (a.size() == 1)
     return {};
@@ -29,7 +29,7 @@ Eigen::VectorXcd roots(const Eigen::Ref<const Eigen::VectorXd>& a) {
   return Eigen::PolynomialSolver<double, Eigen::Dynamic>(ascending).roots();
 }
 
-/// The filter without a delay, everything 0 before the first sample.
+/// Filters without a delay; input and output are 0 before the first sample.
 Eigen::VectorXd filter_from_rest(const Eigen::Ref<const Eigen::VectorXd>& b,
                                  const Eigen::Ref<const Eigen::VectorXd>& a, const Eigen::VectorXd& x) {
   const Eigen::Index N = x.size();
@@ -79,7 +79,7 @@ Eigen::VectorXd filter(const Eigen::Ref<const Eigen::VectorXd>& b, const Eigen::
   Eigen::VectorXd input = delayed(x, delay, start);
   if (start == StartState::rest || x.size() == 0)
     return filter_from_rest(b, a, input);
-  // Linear: the deviation from the steady state starts from rest.
+  // The filter is linear, so that the deviation from the steady state starts from rest.
   const double steady = steady_output(b, a, x(0));
   input.array() -= x(0);
   return filter_from_rest(b, a, input).array() + steady;
@@ -94,7 +94,7 @@ bool has_roots_within(const Eigen::Ref<const Eigen::VectorXd>& a, double radius)
   if (!a.allFinite())
     return false;
   require_monic(a);
-  Eigen::VectorXd scaled = a;  // the roots of z are those of a over `radius`
+  Eigen::VectorXd scaled = a;  // its roots are those of a divided by `radius`
   double power = 1.0;
   for (double& coefficient : scaled) {
     coefficient *= power;
@@ -105,7 +105,7 @@ bool has_roots_within(const Eigen::Ref<const Eigen::VectorXd>& a, double radius)
     if (!(std::abs(reflection) < 1.0))
       return false;
     const double share = 1.0 - reflection * reflection;
-    for (Eigen::Index i = 0, j = degree; i <= j; ++i, --j) {  // the polynomial less its mirror image
+    for (Eigen::Index i = 0, j = degree; i <= j; ++i, --j) {  // subtracts the mirror image of the polynomial
       const double low = scaled(i), high = scaled(j);
       scaled(i) = (low - reflection * high) / share;
       scaled(j) = (high - reflection * low) / share;

@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-/// The largest l with P(B(n, 1/2) < l) <= probability; 0 when there is none above it.
+/// Returns the largest l with P(B(n, 1/2) < l) <= probability; 0 if no l above 0 satisfies this.
 std::size_t order_below(std::size_t n, double probability) {
   const boost::math::binomial_distribution<> fair(static_cast<double>(n), 0.5);
   std::size_t order = 0;

@@ -8,34 +8,35 @@
 
 namespace mpm {
 
-/// Values within one cluster: values that share the same draw.
+/// Sum and number of the values within one cluster: values that share the same draw.
 struct ClusterSum {
   double sum = 0.0;
   std::int64_t count = 0;
 };
 
-/// A number that was found, with its uncertainty.
+/// An estimated number with its uncertainty.
 struct Estimate {
-  double value = kNaN;                    ///< NaN: of nothing
-  Interval interval{kNaN, kNaN};          ///< NaN: none
-  std::int64_t count = 0;                 ///< values behind it
-  std::vector<ClusterSum> clusters = {};  ///< of a clustered_mean(): its values
+  double value = kNaN;                    ///< NaN if nothing was estimated
+  Interval interval{kNaN, kNaN};          ///< NaN if there is none
+  std::int64_t count = 0;                 ///< number of values behind `value`
+  std::vector<ClusterSum> clusters = {};  ///< the values of a clustered_mean()
 };
 
-/// The mean of values, without an interval.
+/// Returns the mean of values, without an interval.
 Estimate mean_estimate(const std::vector<double>& values);
 
-/// The median of values, of which some may be infinite (as a delay is that did not end while somebody
-/// looked), with the order statistics as its interval (David and Nagaraja 2003, 7.1): with n values in
-/// ascending order [x_(l), x_(n+1-l)], l the largest number with P(B(n, 1/2) < l) <= (1 - confidence) / 2. It
-/// holds the median of any distribution with `confidence`; there is none for fewer than 6 values at 95 %.
-/// With an even n the two values in the middle are averaged. No value may be NaN.
+/// Returns the median of values. Some values may be infinite, such as a delay that had not ended when the
+/// observation did. The interval consists of order statistics (David and Nagaraja 2003, 7.1): with n values
+/// in ascending order it is [x_(l), x_(n+1-l)], where l is the largest number with P(B(n, 1/2) < l) <= (1 -
+/// confidence) / 2. It contains the median of any distribution with `confidence`; at 95 % there is no
+/// interval for fewer than 6 values. With an even n the two values in the middle are averaged. No value may
+/// be NaN.
 /// @throws InputError unless 0 < confidence < 1
 Estimate median_estimate(std::vector<double> values, double confidence);
 
-/// The rate of a Poisson process of which `events` were seen in `exposure`, with Garwood's exact interval
-/// (1936): chi^2_{alpha/2}(2 events) / 2 to chi^2_{1-alpha/2}(2 events + 2) / 2 over the exposure. NaN
-/// without exposure.
+/// Returns the rate of a Poisson process that showed `events` events in `exposure`, with Garwood's exact
+/// interval (1936): chi^2_{alpha/2}(2 events) / 2 to chi^2_{1-alpha/2}(2 events + 2) / 2, each divided by the
+/// exposure. NaN if the exposure is 0.
 /// @throws InputError for a negative number of events, or unless 0 < confidence < 1
 Estimate poisson_rate(std::int64_t events, double exposure, double confidence);
 

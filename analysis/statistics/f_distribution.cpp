@@ -12,11 +12,12 @@
 namespace mpm {
 namespace {
 
-/// Below it the tail is summed up by logarithms: boost would come to 0 some 150 decades further down.
+/// Below this probability the tail is summed in logarithms: boost would underflow to 0 some 150 decades
+/// further down.
 constexpr double kSmallTail = 1e-150;
 
-/// ln I_x(a, b) for a small x, from I_x = x^a (1 - x)^b / (a B(a, b)) sum_n prod (a + b + m)/(a + 1 + m) x^n
-/// (Abramowitz and Stegun, 26.5.4). The quotient of two terms tends to x.
+/// Returns ln I_x(a, b) for a small x, from I_x = x^a (1 - x)^b / (a B(a, b)) sum_n prod (a + b + m)/(a + 1 +
+/// m) x^n (Abramowitz and Stegun, 26.5.4). The ratio of successive terms tends to x.
 double log_small_beta(double a, double b, double x) {
   double term = 1.0;
   double sum = 1.0;

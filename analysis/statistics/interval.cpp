@@ -38,7 +38,7 @@ Interval score_interval(double share, double trials, double confidence) {
   const double zz = z * z / n;
   const double middle = (p + zz / 2.0) / (1.0 + zz);
   const double half_width = std::sqrt(zz * p * (1.0 - p) + zz * zz / 4.0) / (1.0 + zz);
-  // At the ends the formula gives 0 or 1 only to rounding.
+  // At p = 0 and p = 1 the formula gives the end 0 or 1 only to within rounding.
   return {p == 0.0 ? 0.0 : std::max(0.0, middle - half_width),
           p == 1.0 ? 1.0 : std::min(1.0, middle + half_width)};
 }

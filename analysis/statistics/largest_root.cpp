@@ -14,7 +14,8 @@
 namespace mpm {
 namespace {
 
-/// t with P(T > t) = `probability`: T + kShift is about gamma distributed (Chiani 2014, table 1).
+/// Returns the t with P(T > t) = `probability`. T + kShift has approximately a gamma distribution (Chiani
+/// 2014, table 1).
 double tracy_widom_upper_quantile(double probability) {
   constexpr double kShape = 46.446, kScale = 0.186054, kShift = 9.84801;
   return 0.5 * kScale * chi_squared_upper_quantile(probability, 2.0 * kShape) - kShift;

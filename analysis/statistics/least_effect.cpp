@@ -13,10 +13,11 @@ namespace {
 
 constexpr int kResamples = 200;
 
-/// `trials` in ascending order of their effect.
+/// Returns the effect at which the isotonic regression reaches `power`; infinity if it never does. `trials`
+/// are in ascending order of their effect.
 double reached_at(const std::vector<EffectTrial>& trials, double power) {
   struct Block {
-    double effect, hits, count;  ///< the least effect of the block
+    double effect, hits, count;  ///< `effect` is the least of the block
   };
   std::vector<Block> blocks;
   for (const EffectTrial& trial : trials) {

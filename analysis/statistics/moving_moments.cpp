@@ -16,15 +16,15 @@ namespace {
 using Signal = Eigen::Ref<const Eigen::VectorXd>;
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2.0;
-/// Below it m2^2 would leave the range of double precision.
+/// Below this variance, m2^2 would leave the range of double precision.
 constexpr double kSmallestVariance = 1e-150;
 
-/// With r = max(S4/n)/m2^2, the maximum over the windows since the centre was set, k the additions since then
-/// and u the unit roundoff, every power sum obeys |error of S_l|/n <= k u (r m2^2)^(l/4). Through the
-/// formulas of `central_moments` this becomes at most 39 k u r in m4/m2^2, 13 k u r in m3/m2^1.5 and 3 k u r
-/// in m2/m2, hence 45 k u r in the stated errors; evaluating the formulas adds less than 110 u r, and k is 4
-/// or more where it is asked. Divisions are what takes the time here, so that 1/n is computed once, and the
-/// bound is compared without one.
+/// Factor of the error bound. Let r = max(S4/n)/m2^2, with the maximum over the windows since the centre was
+/// set, k the number of additions since then and u the unit roundoff. Then every power sum obeys |error of
+/// S_l|/n <= k u (r m2^2)^(l/4). Through the formulas of `central_moments` this becomes at most 39 k u r in
+/// m4/m2^2, 13 k u r in m3/m2^1.5 and 3 k u r in m2/m2, hence 45 k u r in the stated errors. Evaluating the
+/// formulas adds less than 110 u r, and k is at least 4 whenever the bound is used. Divisions take most of
+/// the time here, so 1/n is computed once and the bound is compared without a division.
 constexpr double kErrorFactor = 80.0;
 
 struct CentralMoments {
@@ -53,7 +53,7 @@ class PowerSums {
   /// Moves the window on by one sample.
   void slide(double leaving, double entering) {
     add(entering, 1.0);
-    peak_ = std::max(peak_, s4_);  // the largest sums are those with both samples
+    peak_ = std::max(peak_, s4_);  // the sums are largest with both samples in them
     add(leaving, -1.0);
     additions_ += 2.0;
   }
@@ -67,7 +67,8 @@ class PowerSums {
     return {a2 - dd, a3 - 3.0 * d * a2 + 2.0 * d * dd, a4 - 4.0 * d * a3 + 6.0 * dd * a2 - 3.0 * dd * dd};
   }
 
-  /// Whether the bound above keeps the results within the stated accuracy. False for a NaN or m2 <= 0.
+  /// Returns whether the bound above keeps the results within the stated accuracy. False for a NaN or m2 <=
+  /// 0.
   bool accurate(double m2) const {
     return m2 > kSmallestVariance &&
            kErrorFactor * kUnitRoundoff * additions_ * (peak_ * share_) <= kMovingMomentAccuracy * (m2 * m2);
@@ -84,7 +85,7 @@ class PowerSums {
   }
 
   Eigen::Index window_;
-  double share_;  // of a sample: 1/n
+  double share_;  // weight of a sample, 1/n
   double centre_ = 0.0;
   double s1_ = 0.0, s2_ = 0.0, s3_ = 0.0, s4_ = 0.0;
   double additions_ = 0.0;  // since the centre was set

@@ -16,10 +16,10 @@ namespace {
 
 struct BinnedSignal {
   std::vector<Eigen::Index> bin;  ///< of each sample
-  Eigen::Index bins = 0;          ///< that have samples
+  Eigen::Index bins = 0;          ///< number of bins that have samples
 };
 
-/// A value goes to the bin of its mean rank.
+/// Sorts each value into the bin of its mean rank.
 BinnedSignal binned(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index bins) {
   const auto n = static_cast<std::size_t>(x.size());
   std::vector<Eigen::Index> sorted(n);
@@ -43,13 +43,13 @@ BinnedSignal binned(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index bin
   return result;
 }
 
-/// ln P(chi^2(freedom) > x).
+/// Returns ln P(chi^2(freedom) > x).
 double log_chi_squared_tail(double x, double freedom) {
   const double a = 0.5 * freedom;
   const double half = 0.5 * x;
   if (const double p = boost::math::gamma_q(a, half); p > 1e-250)
     return std::log(p);
-  return (a - 1.0) * std::log(half) - half - boost::math::lgamma(a);  // its leading term, for large x
+  return (a - 1.0) * std::log(half) - half - boost::math::lgamma(a);  // the leading term for large x
 }
 
 }  // namespace

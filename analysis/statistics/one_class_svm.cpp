@@ -15,7 +15,7 @@ namespace {
 constexpr double kSvmTolerance = 1e-4;  ///< of the optimality conditions
 constexpr double kSvmCache = 16.0;      ///< MB of rows of the kernel
 
-/// libsvm reports each training on stdout, through one function for all threads.
+/// Keeps libsvm quiet: it would report each training on stdout, through one function for all threads.
 bool silence_libsvm() {
   svm_set_print_string_function([](const char*) {});
   return true;

@@ -11,17 +11,18 @@ namespace mpm {
 ///
 /// | symbol  | name     | shape | meaning                                        |
 /// |---------|----------|-------|------------------------------------------------|
-/// | x_i     | points   | m x n | what it learns from, a column each             |
+/// | x_i     | points   | m x n | training points, one in each column            |
 /// | nu      | nu       |       | largest share of these points that lie outside |
-/// | gamma   | gamma    |       | of the kernel                                  |
+/// | gamma   | gamma    |       | width parameter of the kernel                  |
 class OneClassSvm {
  public:
   /// @throws InputError for no points, values that are not finite, nu outside (0, 1) or gamma not above 0
   OneClassSvm(const Eigen::Ref<const Eigen::MatrixXd>& points, double nu, double gamma);
 
-  /// ln rho - ln sum_i alpha_i K(x, x_i): above 0 where the decision function is negative. Far away it is
-  /// gamma times the square of the distance, where the decision function itself is -rho whatever x is.
-  /// @throws InputError for another number of elements than m
+  /// Returns ln rho - ln sum_i alpha_i K(x, x_i), which is above 0 where the decision function is negative.
+  /// Far away from the points it grows as gamma times the square of the distance, whereas the decision
+  /// function itself is -rho for every x.
+  /// @throws InputError if x does not have m elements
   double outsideness(const Eigen::Ref<const Eigen::VectorXd>& x) const;
 
  private:

@@ -4,13 +4,14 @@
 
 namespace mpm {
 
-/// Quantile of values in ascending order, interpolated linearly between order statistics (type 7 of Hyndman
-/// and Fan 1996): with h = (n - 1) p, x_floor(h) + (h - floor(h)) (x_floor(h)+1 - x_floor(h)). p = 1/2 is the
-/// median.
+/// Returns a quantile of values in ascending order, interpolated linearly between order statistics (type 7 of
+/// Hyndman and Fan 1996): with h = (n - 1) p, x_floor(h) + (h - floor(h)) (x_floor(h)+1 - x_floor(h)). p =
+/// 1/2 is the median.
 /// @throws InputError for no values or p outside [0, 1]
 double sorted_quantile(const std::vector<double>& sorted, double probability);
 
-/// Median of values in any order that is one of them: of an even number the larger of the two in the middle.
+/// Returns a median that is itself one of the values, which may be in any order. For an even number of values
+/// it is the larger of the two in the middle.
 /// @throws InputError for no values
 double upper_median(std::vector<double> values);
 

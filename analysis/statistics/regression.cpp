@@ -20,11 +20,11 @@ using Signal = Eigen::Ref<const Eigen::VectorXd>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFewestPairs = 3.0;
-constexpr std::size_t kFewestClusters = 5;           // of a sample, and of a resample
+constexpr std::size_t kFewestClusters = 5;           // in a sample, and in a resample
 constexpr double kExact = 1e-12;                     // 1 - R^2 within the rounding of the sums
 constexpr double kLargestCorrelation = 1.0 - 1e-15;  // where Fisher's z is still finite
 
-/// What a line needs to know about a set of pairs. Adding two gives the sums of the union.
+/// The sums over a set of pairs from which a line is fitted. Adding two gives the sums of the union.
 struct Sums {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
 
@@ -43,15 +43,16 @@ struct Sums {
   Sums operator-(const Sums& o) const { return {n - o.n, x - o.x, y - o.y, xx - o.xx, xy - o.xy, yy - o.yy}; }
 };
 
-/// The point the sums are taken about: the medians. The distance from mean to median is at most one standard
-/// deviation, so that the centred sums of the whole set lose no more than one bit; and one wild pair does not
-/// move it away from the bulk, which a resample without that pair would feel as cancellation.
+/// The point about which the sums are taken: the medians. The distance from mean to median is at most one
+/// standard deviation, so that the centred sums of the whole set lose no more than one bit. One outlier does
+/// not move the medians away from the bulk of the pairs; if it did, a resample without that pair would suffer
+/// from cancellation.
 struct Centre {
   double x = 0.0;
   double y = 0.0;
 };
 
-/// Places of the pairs without a NaN or an infinity, in the order of their clusters.
+/// Returns the indices of the pairs without a NaN or an infinity, in the order of their clusters.
 std::vector<Eigen::Index> finite_pairs(const Signal& x, const Signal& y,
                                        std::span<const std::int64_t> cluster) {
   std::vector<Eigen::Index> pairs;
@@ -73,7 +74,7 @@ double median(const Signal& values, const std::vector<Eigen::Index>& pairs) {
   return sorted_quantile(sorted, 0.5);
 }
 
-/// `square` - n mean^2, or 0 when that is within the rounding of the sums or of the values themselves.
+/// Returns `square` - n mean^2, or 0 if this is within the rounding of the sums or of the values themselves.
 double centred(double n, double square, double mean, double centre) {
   const double value = square - n * mean * mean;
   const double rounding = 4.0 * kEpsilon * std::abs(centre);
@@ -100,7 +101,7 @@ LinearFit line(const Sums& sums, const Centre& centre) {
   return fit;
 }
 
-/// The pairs as a fit sees them: the sums of each cluster, in the order of the cluster numbers.
+/// The pairs in the form that a fit needs: the sums of each cluster, in the order of the cluster numbers.
 struct ClusterSums {
   Centre centre;
   std::vector<Sums> clusters;
@@ -121,7 +122,7 @@ struct ClusterSums {
   }
 };
 
-/// The results of a fit in which they scatter evenly: R^2 as Fisher's z = artanh r.
+/// The results of a fit, transformed so that they scatter evenly: R^2 becomes Fisher's z = artanh r.
 struct Results {
   double slope, intercept, z;
 
@@ -133,11 +134,11 @@ Results results_of(const LinearFit& fit) {
   return {fit.slope, fit.intercept, std::atanh(std::clamp(r, -kLargestCorrelation, kLargestCorrelation))};
 }
 
-/// Standard errors of the results from the influence of each cluster on them (the infinitesimal jackknife); a
-/// cluster counts as often as it was drawn.
+/// Returns the standard errors of the results from the influence of each cluster on them (the infinitesimal
+/// jackknife). A cluster counts as often as it was drawn.
 ///
-/// With the means mx, my, the centred sums Sxx, Sxy, Syy of all pairs, those of a cluster about mx and my in
-/// small letters, and its residuals e about the line:
+/// With the means mx, my and the centred sums Sxx, Sxy, Syy of all pairs, the sums sxx, sxy, syy of a cluster
+/// about mx and my, and the sum e of its residuals about the line:
 ///
 ///   I(slope) = (sxy - slope sxx)/Sxx,   I(intercept) = e/n - mx I(slope),
 ///   I(z) = r (sxy/Sxy - sxx/(2 Sxx) - syy/(2 Syy))/(1 - r^2)
@@ -163,8 +164,8 @@ Results standard_errors(const std::vector<Sums>& clusters, const std::vector<int
   return {std::sqrt(squares.slope), std::sqrt(squares.intercept), std::sqrt(squares.z)};
 }
 
-/// Standard errors from the fits without each cluster in turn (the jackknife), which sees more than
-/// influences do where a few clusters carry the line.
+/// Returns the standard errors from the fits that leave out each cluster in turn (the jackknife). If a few
+/// clusters determine the line, the jackknife sees more than the influences do.
 Results jackknife_errors(const std::vector<Sums>& clusters, const Sums& all, const Centre& centre) {
   const auto without = [&](const Sums& cluster) { return results_of(line(all - cluster, centre)); };
   const auto count = static_cast<double>(clusters.size());
@@ -187,12 +188,13 @@ struct Studentised {
   std::vector<double> slope, intercept, z;
 };
 
-/// Number of clusters in a resample: half of them.
+/// Returns the number of clusters in a resample: half of all clusters, but at least kFewestClusters.
 std::size_t resample_size(std::size_t clusters) {
   return std::max((clusters + 1) / 2, kFewestClusters);
 }
 
-/// One resample, unless it has no line, or nothing beside it: no standard error then.
+/// Adds one resample, unless it has no line, or all its pairs lie on the line, so that there is no standard
+/// error.
 void add_resample(const std::vector<Sums>& clusters, const Centre& centre, const Results& results,
                   RandomStream& stream, Studentised& studentised) {
   std::vector<int> times(clusters.size(), 0);
@@ -222,7 +224,7 @@ Interval studentised_interval(double result, double error, std::vector<double>& 
           result - error * sorted_quantile(t, (1.0 - confidence) / 2.0)};
 }
 
-/// R^2 over an interval of z.
+/// Returns the range of R^2 over an interval of z.
 Interval r_squared_interval(const Interval& z) {
   const double lower = std::tanh(z.lower), upper = std::tanh(z.upper);
   const double least = lower <= 0.0 && upper >= 0.0 ? 0.0 : std::min(lower * lower, upper * upper);
@@ -276,7 +278,7 @@ LinearFitIntervals cluster_bootstrap(const Signal& x, const Signal& y, std::span
   const Results results = results_of(result.fit);
   if (clusters.size() < kFewestClusters || !results.are_finite())
     return result;
-  if (result.fit.r_squared == 1.0) {  // so are all resamples
+  if (result.fit.r_squared == 1.0) {  // all resamples have the same line
     result.slope = {results.slope, results.slope};
     result.intercept = {results.intercept, results.intercept};
     result.r_squared = {1.0, 1.0};

@@ -16,13 +16,13 @@ namespace mpm {
 ///   slope = Sxy/Sxx,   intercept = mean y - slope mean x,   R^2 = Sxy^2/(Sxx Syy)
 ///
 /// with the centred sums Sxx, Sxy, Syy. Pairs with a NaN or an infinity (an index without a denominator) are
-/// left out and counted. All three results are NaN for fewer than 3 pairs or when x has no variance to
-/// rounding; R^2 alone is NaN when y has none.
+/// left out and counted. All three results are NaN if there are fewer than 3 pairs or if x has no variance
+/// beyond rounding; R^2 alone is NaN if y has none.
 struct LinearFit {
   double slope = kNaN;
   double intercept = kNaN;
-  /// Coefficient of determination, the share of the variance of y that the line explains; with one regressor
-  /// the square of Pearson's correlation.
+  /// Coefficient of determination: the share of the variance of y that the line explains. With one regressor
+  /// it is the square of Pearson's correlation.
   double r_squared = kNaN;
   /// Number of pairs in the fit.
   Eigen::Index pairs = 0;
@@ -53,22 +53,24 @@ struct LinearFitIntervals {
   int replications_used = 0;
 };
 
-/// The line alone. Throws InputError when the lengths differ.
+/// Fits the line, without intervals. Throws InputError if the lengths differ.
 LinearFit linear_fit(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& y);
 
-/// The line with intervals by the studentised cluster bootstrap (Davison and Hinkley 1997, sections 3.8 and
-/// 5.2), m out of n: half as many whole clusters as there are (but 5) are drawn with replacement, and the
-/// line is fitted to their pairs. With t = (result of a resample - result)/standard error of the resample, by
-/// the influences of its clusters, and the jackknife's standard error s, the interval is
+/// Fits the line, with intervals by the studentised cluster bootstrap (Davison and Hinkley 1997, sections 3.8
+/// and 5.2), m out of n. Each resample draws half as many whole clusters as there are (but at least 5), with
+/// replacement, and fits the line to their pairs. With t = (result of a resample - result)/standard error of
+/// the resample, where that error comes from the influences of its clusters, and the jackknife's standard
+/// error s of the result, the interval is
 ///
 ///   result - s t(1 - a/2) to result - s t(a/2),   a = 1 - confidence
 ///
 /// with the quantiles t() of the resamples (interpolated between order statistics). R^2 is studentised as
-/// Fisher's z = artanh r. Where a few experiments carry the line, as those with a large Ivar do, percentile
-/// intervals are too short, and so are, a little, those of resamples of full size: the bootstrap of fewer
-/// than n observations holds for heavy tails, too (Bickel, Goetze and van Zwet 1997, Statistica Sinica 7).
-/// The coverage of all three is in docs/methods_thesis.md. Clusters are the experiments, because the
-/// controlled variables of one experiment share its mismatch and disturbance and are no independent pairs.
+/// Fisher's z = artanh r. If a few experiments determine the line, as experiments with a large Ivar do,
+/// percentile intervals are too short, and intervals from resamples of full size are a little too short. The
+/// bootstrap with fewer than n observations also holds for heavy tails (Bickel, Goetze and van Zwet 1997,
+/// Statistica Sinica 7). The coverage of all three is in docs/methods_thesis.md. The clusters are the
+/// experiments, because the controlled variables of one experiment share its mismatch and disturbance and are
+/// not independent pairs.
 ///
 /// The pairs of a cluster enter through their sums only, so that a resample costs O(clusters). The result
 /// depends on the numbers of `stream` and on the order of the pairs within a cluster, not on the order of the
@@ -79,9 +81,9 @@ LinearFit linear_fit(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Re
 /// | x, y    | pairs   | n     | any  |
 /// | cluster | number of the experiment that a pair belongs to | n | - |
 ///
-/// Resamples without a line or an R^2, or all on their line within rounding, are left out and counted. With
-/// fewer than 5 clusters, or when more than half of the resamples are left out, the ends of the intervals are
-/// NaN. When all pairs are on the line, both ends are the result.
+/// A resample is left out and counted if it has no line or no R^2, or if all its pairs lie on its line within
+/// rounding. If there are fewer than 5 clusters, or if more than half of the resamples are left out, the ends
+/// of the intervals are NaN. If all pairs lie on the line, both ends equal the result.
 /// @throws InputError when the lengths differ or the options are invalid
 LinearFitIntervals cluster_bootstrap(const Eigen::Ref<const Eigen::VectorXd>& x,
                                      const Eigen::Ref<const Eigen::VectorXd>& y,

@@ -17,7 +17,8 @@ namespace {
 
 using Scores = std::span<const double>;
 
-/// Halfway between two scores: also when their sum would overflow, and never equal to the upper one.
+/// Returns the point halfway between two scores, even if their sum would overflow. It never equals the upper
+/// score.
 double between(double upper, double lower) {
   if (std::isinf(lower) || std::isinf(upper))
     return lower;
@@ -29,7 +30,7 @@ double share(std::int64_t hits, std::int64_t total) {
   return total > 0 ? static_cast<double>(hits) / static_cast<double>(total) : kNaN;
 }
 
-/// How many cases of each side are above some threshold.
+/// The numbers of positives and negatives above some threshold.
 struct Above {
   std::int64_t positives = 0, negatives = 0;
 };
@@ -39,7 +40,7 @@ RocPoint point(double threshold, const Above& above, std::int64_t positives, std
           share(above.positives, above.positives + above.negatives)};
 }
 
-/// Lists in descending order, gone through as one of all their scores.
+/// Several lists in descending order, read as one list of all their scores.
 class Merged {
  public:
   explicit Merged(const std::vector<SortedScores>& lists) {
@@ -47,7 +48,7 @@ class Merged {
       left_.emplace_back(*list.descending);
   }
 
-  /// The largest score that is left; -infinity at the end.
+  /// Returns the largest score that is left; -infinity at the end.
   double next() const {
     double largest = -kInfinity;
     for (const Scores& list : left_)
@@ -55,7 +56,7 @@ class Merged {
         largest = std::max(largest, list.front());
     return largest;
   }
-  /// Takes those that are not below `score`, and returns how many there were.
+  /// Takes the scores that are not below `score` and returns how many there were.
   std::int64_t take(double score) {
     std::int64_t taken = 0;
     for (Scores& list : left_)
@@ -99,7 +100,7 @@ void RocCurve::each(const std::function<void(const RocPoint&)>& visit) const {
   visit(point(kInfinity, above, positives, negatives));
   while (above.positives + above.negatives < positives + negatives) {
     const double score = std::max(positive.next(), negative.next());
-    above.positives += positive.take(score);  // equal scores fall together
+    above.positives += positive.take(score);  // equal scores pass together
     above.negatives += negative.take(score);
     const bool last = above.positives + above.negatives == positives + negatives;
     const double threshold = last ? -kInfinity : between(score, std::max(positive.next(), negative.next()));
@@ -128,7 +129,8 @@ RocCurve roc_curve(std::vector<SortedScores> positive_scores, std::vector<Sorted
     curve.area += (now.false_positive_rate - before.false_positive_rate) * 0.5 *
                   (now.true_positive_rate + before.true_positive_rate);
     const double recall = now.true_positive_rate - before.true_positive_rate;
-    curve.average_precision += recall > 0.0 ? recall * now.precision : 0.0;  // there is none at the start
+    curve.average_precision +=
+        recall > 0.0 ? recall * now.precision : 0.0;  // no precision at the first point
     if (now.youden() > curve.best.youden())
       curve.best = now;
     before = now;
@@ -165,7 +167,7 @@ Interval area_interval(double area, std::int64_t positives, std::int64_t negativ
         a * (1.0 - a) / (m * n) * (1.0 + others * ((1.0 - a) / (2.0 - a) + a / (1.0 + a)));
     return (a - area) * (a - area) <= z * z * variance;
   };
-  // The set is an interval around `area`: halve until neither end moves.
+  // The set of areas is an interval around `area`. Bisect until the end no longer moves.
   const auto end = [&](double outside) {
     if (outside == area)
       return outside;

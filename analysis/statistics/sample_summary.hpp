@@ -17,7 +17,7 @@ struct SampleSummary {
   Interval mean_interval{kNaN, kNaN};
 };
 
-/// Summary of `values` without its NaNs; the interval needs two values.
+/// Summarises `values` without its NaNs. The interval needs two values.
 SampleSummary summarise(const std::vector<double>& values, double confidence);
 
 }  // namespace mpm

@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// Newcombe's correlation of the two answers, of shares of `total` cases.
+/// Returns Newcombe's correlation phi of the two answers, with the counts scaled to `total` cases.
 double corrected_phi(const PairedCounts& n, double total) {
   const double scale = total / static_cast<double>(n.total());
   const auto real = [scale](std::int64_t count) { return scale * static_cast<double>(count); };
@@ -27,7 +27,7 @@ double corrected_phi(const PairedCounts& n, double total) {
   return (excess > 0.0 ? std::max(0.0, excess - 0.5 * total) : excess) / std::sqrt(margins);
 }
 
-/// Wilson's intervals of two shares combined.
+/// Combines the intervals of two shares into one of their difference, as in paired_difference().
 Interval combined(const Rate& first, const Rate& second, double phi) {
   const auto radius = [phi](double a, double b) {
     return std::sqrt(std::max(0.0, a * a - 2.0 * phi * a * b + b * b));
@@ -37,7 +37,7 @@ Interval combined(const Rate& first, const Rate& second, double phi) {
           difference + radius(second.interval.upper - second.value, first.value - first.interval.lower)};
 }
 
-/// Fisher's exact test, two-sided.
+/// Returns p of Fisher's exact test, two-sided.
 double fisher_p(const Rate& first, const Rate& second) {
   const std::int64_t hits = first.hits + second.hits, total = first.total + second.total;
   if (hits == 0 || hits == total)
@@ -45,7 +45,7 @@ double fisher_p(const Rate& first, const Rate& second) {
   const boost::math::hypergeometric_distribution<> tables(
       static_cast<unsigned>(hits), static_cast<unsigned>(first.total), static_cast<unsigned>(total));
   const auto probability = [&](std::int64_t k) { return boost::math::pdf(tables, static_cast<unsigned>(k)); };
-  // The mirrored table of two equal groups has the same probability only to rounding.
+  // With two groups of equal size, the mirrored table has the same probability only to within rounding.
   const double found = probability(first.hits) * (1.0 + 1e-9);
   double p = 0.0;
   for (std::int64_t k = std::max<std::int64_t>(0, hits - second.total); k <= std::min(hits, first.total); ++k)
@@ -54,14 +54,14 @@ double fisher_p(const Rate& first, const Rate& second) {
   return std::min(1.0, p);
 }
 
-/// Half of the length of an interval over that of independent trials.
+/// Returns the length of the interval divided by the length it would have for independent trials.
 double stretch_of(const Rate& rate, double confidence) {
   const Interval independent = wilson_interval(rate.hits, rate.total, confidence);
   return (rate.interval.upper - rate.interval.lower) / (independent.upper - independent.lower);
 }
 
-/// Of two shares of which one has clusters, with the variances that lengthen their intervals as they do; 0 of
-/// independent trials.
+/// Returns p of two shares of which at least one has clusters. Each variance is as many times larger as the
+/// square of the stretch of its interval. 0 if neither interval is longer than that of independent trials.
 double clustered_p(const Rate& first, const Rate& second, double confidence) {
   const double of_first = stretch_of(first, confidence), of_second = stretch_of(second, confidence);
   if (of_first <= 1.0 && of_second <= 1.0)
@@ -82,7 +82,7 @@ void require_counts(const PairedCounts& counts) {
       throw InputError("number of cases", fmt::format("{}", count), "0 or more");
 }
 
-/// paired_difference() of the shares that `counts` has, but of `cases` independent cases.
+/// paired_difference() of the shares in `counts`, as if there were `cases` independent cases.
 ShareDifference difference_of(const PairedCounts& counts, double cases, const McNemarTest& test,
                               double confidence) {
   const std::int64_t total = counts.total();
@@ -97,7 +97,7 @@ ShareDifference difference_of(const PairedCounts& counts, double cases, const Mc
           test.p_two_sided};
 }
 
-/// The clusters with a case.
+/// Returns the clusters that have a case.
 std::vector<PairedCounts> occupied(std::span<const PairedCounts> clusters) {
   std::vector<PairedCounts> kept;
   for (const PairedCounts& cluster : clusters) {

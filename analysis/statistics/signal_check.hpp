@@ -20,12 +20,12 @@ void require_same_length(const std::string& name_a, const Eigen::Ref<const Eigen
 /// @throws InputError naming the level found
 void require_confidence(double confidence);
 
-/// Whether all values are the same. Their computed mean need not be that value: its rounding error grows with
-/// the length, and beyond some hundred samples may exceed what `variance_floor` allows.
+/// Returns whether all values are the same. Their computed mean need not equal that value: its rounding error
+/// grows with the length and may, beyond some hundred samples, exceed what `variance_floor` allows.
 bool stands_still(const Eigen::Ref<const Eigen::VectorXd>& signal);
 
-/// The largest variance that rounding alone can give a constant signal: (4 eps max|x|)^2, with eps = 2.2e-16.
-/// A variance up to this floor counts as zero throughout the analysis.
+/// Returns the largest variance that rounding alone can give a constant signal: (4 eps max|x|)^2, with eps =
+/// 2.2e-16. A variance up to this floor counts as zero throughout the analysis.
 double variance_floor(const Eigen::Ref<const Eigen::VectorXd>& signal);
 
 }  // namespace mpm

@@ -32,8 +32,8 @@ std::vector<std::size_t> SignalLook::fresh() const {
 }
 
 double SignalLook::noise() const {
-  constexpr double kOfNormal = 1.4826;  // standard deviation over median absolute deviation
-  constexpr double kHeld = 0.7;         // new values a row: noise that is not held is nearly always new
+  constexpr double kOfNormal = 1.4826;  // standard deviation / median absolute deviation, if normal
+  constexpr double kHeld = 0.7;         // share of new values: noise that is not held is nearly always new
   std::vector<double> seen = values, bends;
   if (changes < kHeld) {
     seen.clear();

@@ -9,7 +9,7 @@
 namespace mpm {
 namespace {
 
-/// A stretch of equal values, and how many are there: samples between them may be missing.
+/// A stretch of equal values, with their number: samples between them may be missing.
 struct EqualValues {
   Eigen::Index first, end, count;
 
@@ -29,7 +29,7 @@ std::vector<EqualValues> equal_values(const Eigen::Ref<const Eigen::RowVectorXd>
   return stretches;
 }
 
-/// N p^(n - 1).
+/// Returns N p^(n - 1), see Standstill::chance.
 double chance_of(Eigen::Index samples, double p, Eigen::Index count) {
   return static_cast<double>(samples) * std::pow(p, static_cast<double>(count - 1));
 }
@@ -43,7 +43,7 @@ Standstill longest_standstill(const Eigen::Ref<const Eigen::RowVectorXd>& values
                        [](const EqualValues& a, const EqualValues& b) { return a.count < b.count; });
   if (longest == stretches.end())
     return {};
-  // A stretch has one neighbour fewer than values; those at its two ends differ.
+  // A stretch has one pair of equal neighbours fewer than values. Its last value and the next stretch differ.
   double equal = 0.0, neighbours = 0.0;
   for (const EqualValues& each : stretches)
     if (each.first != longest->first) {

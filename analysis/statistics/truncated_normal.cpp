@@ -36,7 +36,7 @@ double log_probability(double low, double high) {
 double log_normal_integral(double low, double high, double mean, double deviation) {
   if (!(low < high))
     return -kInfinity;
-  // A density that is flat over the interval: the difference of two tails would lose its digits.
+  // The density is nearly flat over the interval, where the difference of two tails would lose its digits.
   const double width = (high - low) / deviation;
   const double middle = (0.5 * (low + high) - mean) / deviation;
   if (width * (1.0 + std::abs(middle)) < 1e-4)

@@ -26,7 +26,7 @@ void require_setpoints(Eigen::Index cvs, const SetpointTrajectories& y_set) {
   }
 }
 
-/// Null for a CV without one.
+/// Returns the setpoint of a CV, or null if it has none.
 const Eigen::VectorXd* setpoint_of(Eigen::Index cv, const SetpointTrajectories& y_set) {
   return y_set.empty() || !y_set[static_cast<std::size_t>(cv)] ? nullptr
                                                                : &*y_set[static_cast<std::size_t>(cv)];

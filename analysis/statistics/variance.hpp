@@ -11,8 +11,8 @@ namespace mpm {
 /// @throws InputError for fewer than 2 samples or values that are not finite
 double variance(const Eigen::Ref<const Eigen::VectorXd>& signal);
 
-/// Variance about a given setpoint, sum (x - setpoint)^2 / N: the centre is not estimated, so N and not N
-/// - 1.
+/// Variance about a given setpoint, sum (x - setpoint)^2 / N. It divides by N, not N - 1, because the centre
+/// is not estimated.
 /// @throws InputError for no sample or values that are not finite
 double variance_about(const Eigen::Ref<const Eigen::VectorXd>& signal, double setpoint);
 
@@ -21,8 +21,8 @@ double variance_about(const Eigen::Ref<const Eigen::VectorXd>& signal, double se
 double variance_about(const Eigen::Ref<const Eigen::VectorXd>& signal,
                       const Eigen::Ref<const Eigen::VectorXd>& setpoint);
 
-/// Setpoints of the CVs of a loop: entry i has one value a sample for a CV at a setpoint, and none for a CV
-/// that is kept in a range.
+/// Setpoints of the CVs of a loop. Entry i has one value per sample if the CV has a setpoint; it is empty if
+/// the CV is kept in a range.
 using SetpointTrajectories = std::vector<std::optional<Eigen::VectorXd>>;
 
 /// Variance of each CV of y, ny x N: about its setpoint if it has one, about the mean if not; `y_set` is
@@ -37,9 +37,9 @@ double variance_ratio(double numerator, double denominator);
 ///
 ///   Ivar = var(y - mean y) / var(y_ref - mean y_ref)
 ///
-/// which is Ivar for y_ref = y0 (6.7), Ivar_diag for y_ref = y0_diag (6.8) and Ivar_basis for the output of
-/// the basis case (6.22). 1 means that the reference explains y, a value above 1 a loop made worse by
-/// mismatch or disturbance.
+/// It is Ivar for y_ref = y0 (6.7), Ivar_diag for y_ref = y0_diag (6.8) and Ivar_basis if y_ref is the output
+/// of the basis case (6.22). 1 means that the reference explains y; a value above 1 means that mismatch or
+/// disturbance made the loop worse.
 ///
 /// A variance up to (4 eps max|x|)^2, the rounding of a constant signal, counts as 0; see `variance_ratio`.
 /// @throws InputError for fewer than 2 samples, different lengths or values that are not finite
@@ -47,16 +47,16 @@ double variance_index(const Eigen::Ref<const Eigen::VectorXd>& y,
                       const Eigen::Ref<const Eigen::VectorXd>& y_ref);
 
 /// Variance index about a setpoint, Ivar = var(y - y_set)/var(y_ref - y_set): (3.24) for y_ref = y0, (4.14)
-/// for y_ref = y0_diag, with one setpoint a sample. `var` of a control error is its mean square: about its
-/// own mean an offset would not count, and under a constant setpoint (A2.3) would be the same as (A2.4). Zero
-/// variances as in the index about the means.
+/// for y_ref = y0_diag, with one setpoint a sample. `var` of a control error is its mean square. If it were
+/// taken about the mean of the error, an offset would not count, and under a constant setpoint (A2.3) would
+/// be the same as (A2.4). Zero variances are treated as in the index about the means.
 /// @throws InputError for no sample, different lengths or values that are not finite
 double variance_index(const Eigen::Ref<const Eigen::VectorXd>& y,
                       const Eigen::Ref<const Eigen::VectorXd>& y_ref,
                       const Eigen::Ref<const Eigen::VectorXd>& y_set);
 
-/// Variance index of each CV: about its setpoint if it has one, (3.24), (A2.3), about the means if not,
-/// (6.7), (A2.4).
+/// Variance index of each CV: about its setpoint if it has one, (3.24), (A2.3), and otherwise about the
+/// means, (6.7), (A2.4).
 ///
 /// | symbol | meaning | shape | unit |
 /// |--------|---------|-------|------|
