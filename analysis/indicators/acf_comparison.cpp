@@ -16,7 +16,7 @@ namespace {
 
 using Signal = Eigen::Ref<const Eigen::VectorXd>;
 
-constexpr Eigen::Index kFewestCompared = 8;  // a quarter of them are 2 lags
+constexpr Eigen::Index kFewestCompared = 8;  // a quarter of this is 2 lags
 
 void require_inside(const char* name, double value, double lower, double upper) {
   if (!(value > lower && value < upper)) {
@@ -45,7 +45,7 @@ AcfFeatures features(const Autocorrelation& acf, const AcfComparisonOptions& opt
           acf_oscillation(acf, options.oscillation_threshold), acf.values};
 }
 
-/// Bartlett's half band at the decay lag, at the last lag when it lies beyond.
+/// Returns Bartlett's half band at the decay lag, or at the last lag if the decay lag lies beyond it.
 double band_at_decay(const Autocorrelation& acf, double lag) {
   if (std::isnan(lag)) {
     return lag;
@@ -54,7 +54,7 @@ double band_at_decay(const Autocorrelation& acf, double lag) {
   return acf.bartlett_band[static_cast<Eigen::Index>(std::min(std::ceil(lag), last))];
 }
 
-/// Cosine of the angle between two deviations from the same centre.
+/// Returns the cosine of the angle between two deviations from the same centre.
 double coherence(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return std::clamp(a.dot(b) / (a.norm() * b.norm()), -1.0, 1.0);
 }
@@ -69,7 +69,7 @@ double margin(const Deviation& y, const Deviation& y0, const AcfComparison& comp
   return std::max(1.0 + options.decay_tolerance, std::exp(chance));
 }
 
-/// The verdict on the speed. The last lag stands in for a decay lag beyond it.
+/// Returns the verdict on the speed. A decay lag beyond the last lag is replaced by the last lag.
 LoopSpeed speed_verdict(const AcfComparison& comparison, double last_lag) {
   const double y = comparison.y.decay_lag;
   const double y0 = comparison.y0.decay_lag;

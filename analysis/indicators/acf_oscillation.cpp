@@ -17,7 +17,7 @@ struct Turn {
   double value = 0.0;
 };
 
-constexpr Eigen::Index kLongestHalfPeriod = 2;  // times the shortest
+constexpr Eigen::Index kLongestHalfPeriod = 2;  // in multiples of the shortest
 
 /// The first three turning points after lag 0, where the function starts from its maximum 1.
 struct Turns {
@@ -30,8 +30,8 @@ struct Turns {
   }
 };
 
-/// The next turning point after `from`: the lowest point (for sign = 1; the highest for -1) before the first
-/// one that lies `ripple` beyond it. None when the function ends before that.
+/// Returns the next turning point after `from`: the lowest point (for sign = 1; the highest for -1) from
+/// which the function then goes back by more than `ripple`. None if the function ends before that.
 std::optional<Turn> next_turn(const Eigen::VectorXd& r, Turn from, double sign, double ripple) {
   Turn turn = from;
   for (Eigen::Index lag = from.lag + 1; lag < r.size(); ++lag) {
@@ -61,7 +61,7 @@ std::optional<Turns> first_turns(const Autocorrelation& acf) {
   return Turns{*minimum, *maximum, *second_minimum};
 }
 
-/// Value at `lag` of the line through two points.
+/// Returns the value at `lag` of the line through two points.
 double line_at(Turn from, Turn to, Eigen::Index lag) {
   const double share = static_cast<double>(lag - from.lag) / static_cast<double>(to.lag - from.lag);
   return from.value + share * (to.value - from.value);

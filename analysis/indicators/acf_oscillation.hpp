@@ -18,39 +18,39 @@ enum class Oscillation : std::int8_t {
 template <>
 inline constexpr auto kWords<Oscillation> = word_list("undetermined", "absent", "present");
 
-/// What the autocorrelation function says about an oscillation.
+/// The verdict on an oscillation from an autocorrelation function.
 struct AcfOscillation {
   Oscillation verdict = Oscillation::undetermined;
-  /// Decay ratio R of the function over half a period, 0 ... about 1; NaN without two minima and a maximum.
+  /// Decay ratio R of the function over half a period, 0 ... about 1; NaN unless there are two minima and a
+  /// maximum.
   double decay_ratio = kNaN;
-  /// Lag from the first minimum to the second; NaN if there are none. Unit: samples.
+  /// Distance from the first minimum to the second; NaN as above. Unit: samples.
   double period = kNaN;
 };
 
-/// Decay ratio and verdict after Miao and Seborg (1999, Automatic detection of excessively oscillatory
-/// feedback control loops):
+/// Returns decay ratio and verdict after Miao and Seborg (1999, Automatic detection of excessively
+/// oscillatory feedback control loops):
 ///
 ///   R = a/b,   a: height of the first maximum above the line through the first two minima
 ///              b: depth of the first minimum below the line from (0, 1) to the first maximum
 ///
-/// Lines instead of the axis, so that a slow drift under the oscillation does not matter. For the function of
-/// a second-order system under white noise, with w_d = w sqrt(1 - zeta^2),
+/// Heights are measured from lines rather than from the axis, so that a slow drift under the oscillation does
+/// not matter. For the function of a second-order system under white noise, with w_d = w sqrt(1 - zeta^2),
 ///
 ///   r_l = exp(-zeta w l) (cos(w_d l) + zeta/sqrt(1 - zeta^2) sin(w_d l)),
 ///
-/// R is exactly exp(-pi zeta/sqrt(1 - zeta^2)), its decay over half a period; the usual threshold 0.5 is
-/// quarter-amplitude decay over a period, zeta = 0.215.
+/// R is exactly exp(-pi zeta/sqrt(1 - zeta^2)), the decay of the function over half a period. The usual
+/// threshold 0.5 corresponds to quarter-amplitude decay over a period, zeta = 0.215.
 ///
-/// A turning point is one from which the function goes back by more than the white band, so that small
-/// ripples make none. The sample function of a signal without oscillation swings too; `present` therefore
+/// A turning point is a point from which the function goes back by more than the white band, so that small
+/// ripples do not count. The sample function of a signal without oscillation swings too. `present` therefore
 /// needs, besides R >= threshold,
 ///
-/// - an a above Bartlett's half band at the lag of the maximum, and
-/// - three half periods (0 to minimum, to maximum, to second minimum) of which none is longer than twice
-/// another.
+/// - an a above Bartlett's half band at the lag of the maximum, and - three half periods (0 to minimum, to
+/// maximum, to second minimum), none of which is more than twice as long as another.
 ///
-/// An oscillation whose second minimum lies beyond the last lag is `absent`: give one and a half periods of
-/// lags and some more.
+/// If the second minimum of an oscillation lies beyond the last lag, the verdict is `absent`: the lags must
+/// cover a little more than one and a half periods.
 /// @throws InputError unless 0 < threshold < 1
 AcfOscillation acf_oscillation(const Autocorrelation& acf, double threshold = 0.5);
 

@@ -14,8 +14,8 @@
 namespace mpm {
 namespace {
 
-/// The window length of the ellipses (5.3.1): the prediction horizon, or the nearest that the record has room
-/// for.
+/// Returns the window length of the ellipses (5.3.1): the prediction horizon, or the nearest length that fits
+/// the record.
 int one_window(const Study& study, Eigen::Index samples) {
   const auto longest = static_cast<int>(samples - kFewestCorrelatedPairs);
   return std::clamp(static_cast<int>(study.controller.prediction_horizon), kShortestWindow,

@@ -17,7 +17,7 @@ double correlation(const CentredSums& sums) {
   return pearson_correlation(sums, kFewestCorrelatedPairs, kMomentResolution);
 }
 
-/// Adds up `ScatterMeans`.
+/// Accumulates `ScatterMeans`.
 class ScatterSum {
  public:
   void add(const CentredSums& sums) {
@@ -49,7 +49,7 @@ class ScatterSum {
   ScatterMeans sum_{0.0, 0.0, 0.0, 0.0, 0.0, 0};
 };
 
-/// `map` of each statistic.
+/// Applies `map` to each statistic.
 template <class To, class From, class Map>
 PerStatistic<To> transformed(const PerStatistic<From>& from, Map map) {
   return {map(from.kts), map(from.skn), map(from.dkts), map(from.dskn)};
@@ -102,11 +102,12 @@ constexpr std::array<Quantity<CentredSums>, 5> kSums{{
     {"scatter_e0_e0", "1", "sum of squares over the nominal error", &CentredSums::yy},
 }};
 
-constexpr double kMostPairs = 1e15;  // exact as a double
+constexpr double kMostPairs = 1e15;  // exactly representable as a double
 
 using DistributionRows = std::vector<Row<DistributionIndicators>>;
 
-/// The means of the correlations stand twice: `MpmMeans` and `ScatterSum` add up the same numbers.
+/// Copies the means of the correlations, which are stored twice: `MpmMeans` and `ScatterSum` add up the same
+/// numbers.
 void copy_correlations(DistributionIndicators& indicators) {
   indicators.mpm.co_kts = indicators.means.kts.co;
   indicators.mpm.co_skn = indicators.means.skn.co;
@@ -114,7 +115,7 @@ void copy_correlations(DistributionIndicators& indicators) {
   indicators.mpm.co_dskn = indicators.means.dskn.co;
 }
 
-/// A row for each quantity of each statistic of one part of the indicators.
+/// Appends a row for each quantity of each statistic of one part of the indicators.
 template <class Part, std::size_t n>
 void append(DistributionRows& rows, PerStatistic<Part> DistributionIndicators::*part,
             const std::array<Quantity<Part>, n>& quantities) {
@@ -190,7 +191,7 @@ std::vector<Row<DistributionIndicators>> scatter_rows() {
         {std::string("scatter_pairs_") + statistic.name,
          std::string("number of windows behind the ellipse, of ") + statistic.meaning},
         pairs, [pairs](DistributionIndicators& indicators, double value) {
-          // What no count can be (a damaged file) is no windows.
+          // A number that cannot be a count (from a damaged file) is read as 0 windows.
           const bool count = value >= 0.0 && value <= kMostPairs;
           pairs(indicators) = count ? static_cast<Eigen::Index>(value) : 0;
         }));

@@ -36,7 +36,7 @@ MpmIndicator MpmMeans::result() const {
   MpmIndicator result;
   result.co_dkts = co_.dkts.value();
   result.co_dskn = co_.dskn.value();
-  result.i_mpm = std::fmax(result.co_dkts, result.co_dskn);  // of a number and a NaN, fmax takes the number
+  result.i_mpm = std::fmax(result.co_dkts, result.co_dskn);  // fmax of a number and a NaN is the number
   result.co_kts = co_.kts.value();
   result.co_skn = co_.skn.value();
   result.scanned = scanned_;

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
-/// Angle of a line through the origin, above -90 up to 90 degrees: v and -v are the same line.
+/// Returns the angle of the line through the origin and v, above -90 up to 90 degrees: v and -v give the same
+/// line.
 double line_angle(const Eigen::Vector2d& v) {
   const double angle = std::atan2(v.y(), v.x()) * kDegreesPerRadian;
   if (angle > 90.0) {
@@ -35,7 +36,8 @@ PrincipalAxes principal_axes(const CentredSums& sums) {
   covariance << sums.xx, sums.xy, sums.xy, sums.yy;
   covariance /= degrees_of_freedom;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance);  // eigenvalues in ascending order
-  const Eigen::Vector2d deviations = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // -0 of a straight line
+  const Eigen::Vector2d deviations =
+      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // a straight line may have -0
   return {line_angle(eigen.eigenvectors().col(1)), deviations[1], deviations[0]};
 }
 

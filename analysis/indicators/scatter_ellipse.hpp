@@ -8,9 +8,8 @@ namespace mpm {
 
 /// Principal axes of the covariance of a set of pairs, C = [xx xy; xy yy]/(n - 1).
 ///
-/// The members are taken as they are, not divided by their standard deviations: of standardised members every
-/// ellipse would lie at 45 degrees, and tables 2.10 and 2.11 agree with the plain covariance (see
-/// `scatter_shape`).
+/// x and y are not divided by their standard deviations: with standardised values every ellipse would lie at
+/// 45 degrees, and tables 2.10 and 2.11 agree with the plain covariance (see `scatter_shape`).
 ///
 /// | symbol | member | meaning | unit |
 /// |--------|--------|---------|------|
@@ -18,22 +17,22 @@ namespace mpm {
 /// | a      | major  | square root of the largest eigenvalue | that of x and y |
 /// | b      | minor  | square root of the smallest eigenvalue | the same |
 ///
-/// The angle has the sign of the correlation: with y - y0 instead of y0 - y (5.4) it changes its sign, and
-/// magnitudes stay. Where a = b it says nothing.
+/// The angle has the sign of the correlation: with y - y0 instead of y0 - y (5.4) it changes its sign, but
+/// its magnitude stays. If a = b, the angle has no meaning.
 struct PrincipalAxes {
   double angle = 0.0;
   double major = 0.0;
   double minor = 0.0;
 };
 
-/// Principal axes of the pairs behind `sums`. All members are NaN for fewer than 2 pairs.
+/// Returns the principal axes of the pairs behind `sums`. All members are NaN for fewer than 2 pairs.
 PrincipalAxes principal_axes(const CentredSums& sums);
 
-/// |angle| folded into 0 ... 45 degrees, the distance from the nearest axis, as (5.18) demands.
+/// Returns |angle| folded into 0 ... 45 degrees, the distance from the nearest axis, as (5.18) demands.
 double folded_angle(double angle);
 
-/// The ellipse that holds a pair with a given probability, if the pairs are normally distributed:
-/// figures 2.4, 5.5, 5.11, 5.12, 5.19 and 5.20.
+/// The ellipse that contains a pair with a given probability, if the pairs are normally distributed: figures
+/// 2.4, 5.5, 5.11, 5.12, 5.19 and 5.20.
 ///
 /// | member             | meaning | unit |
 /// |--------------------|---------|------|
@@ -45,13 +44,14 @@ struct ConfidenceEllipse {
   double angle = 0.0;
   double semi_major = 0.0, semi_minor = 0.0;
 
-  /// Whether (x, y) lies in the ellipse or on it. False for a NaN.
+  /// Returns whether (x, y) lies in the ellipse or on it. False for a NaN.
   bool contains(double x, double y) const;
 };
 
-/// The confidence ellipse of the pairs behind `sums`, with chi2_crit the quantile of chi-square with 2
-/// degrees of freedom (sections 2.2.3, 5.2.4; Santos-Fernandez 2012). The covariance is taken as known; with
-/// the hundreds of windows of a record the difference to Hotelling's ellipse is below 2 %.
+/// Returns the confidence ellipse of the pairs behind `sums`, where chi2_crit is the quantile of the
+/// chi-squared distribution with 2 degrees of freedom (sections 2.2.3, 5.2.4; Santos-Fernandez 2012). The
+/// covariance is taken as known; with the hundreds of windows of a record the difference from Hotelling's
+/// ellipse is below 2 %.
 /// @throws InputError unless 0 < probability < 1
 ConfidenceEllipse confidence_ellipse(const CentredSums& sums, double probability);
 

@@ -4,7 +4,7 @@
 
 namespace mpm {
 
-/// How far the model is from the plant, CV by CV:
+/// Returns how far the model is from the plant, for each CV:
 ///
 ///   SSE_i = sqrt(sum over k of (y_sim,i(k) - y_i(k))^2)   (4.17)
 ///
