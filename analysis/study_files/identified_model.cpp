@@ -14,10 +14,10 @@
 namespace mpm {
 namespace {
 
-constexpr double kShareOfRange = 0.02;    // of the hard limits of an MV: a step where nothing is said
-constexpr double kNegligibleMove = 1e-8;  // of a CV, in its unit: what an integrator leaves
-constexpr double kUnfinished = 0.05;      // of the gain: a response that is not over
-constexpr double kPoorFit = 0.99;         // explained share below which a fit is warned of
+constexpr double kShareOfRange = 0.02;    // usual step of an MV, as a share of its hard range
+constexpr double kNegligibleMove = 1e-8;  // in the unit of a CV: only an error of integration
+constexpr double kUnfinished = 0.05;      // of the gain: the response has not ended
+constexpr double kPoorFit = 0.99;         // explained share below which there is a warning
 
 std::vector<PlantModel::Variable> all_inputs(const PlantModel& plant) {
   std::vector<PlantModel::Variable> inputs = plant.mvs;
@@ -39,7 +39,7 @@ double usual_step(const Study& study, Eigen::Index input) {
   return largest > 0.0 ? largest : kNaN;
 }
 
-/// What speaks against a model of this response; empty: nothing.
+/// Returns the reason to doubt a model of this response; empty if there is none.
 std::string doubt_of(const StepResponseFit& fit, const Eigen::VectorXd& response, double sample_time) {
   if (fit.explained < kPoorFit)
     return fmt::format("only {:.1f} % of the step response is explained", 100.0 * fit.explained);
@@ -98,7 +98,7 @@ std::string variables_text(const char* list, const std::vector<PlantModel::Varia
   return text;
 }
 
-/// Six digits: more than a step test gives.
+/// Writes six digits, which is more than a step test can give.
 std::string coefficients_text(const Eigen::VectorXd& coefficients) {
   std::vector<std::string> texts;
   for (const double coefficient : coefficients)

@@ -13,38 +13,39 @@
 
 namespace mpm {
 
-/// A channel as a step test gives it.
+/// A channel identified by a step test.
 struct IdentifiedChannel {
   std::string cv, input;  ///< names
   StepResponseFit fit;
   double asymmetry;   ///< StepResponse::asymmetry of the CV
   double rms_error;   ///< under the step, in the unit of the CV
-  std::string doubt;  ///< the reason against it, a sentence; empty: none
+  std::string doubt;  ///< the reason to doubt it, a sentence; empty if there is none
 };
 
-/// What a step test of the plant of a study gives.
+/// The result of a step test of the plant of a study.
 struct IdentifiedModel {
   StepTestOptions test;
   std::vector<StepResponse> responses;      ///< of each MV and then each MD
-  std::vector<IdentifiedChannel> channels;  ///< those that are not zero, CV by CV
+  std::vector<IdentifiedChannel> channels;  ///< the channels that are not zero, CV by CV
 
-  /// A sentence for each channel that is in doubt, each CV that nothing moves, and each input that moves
-  /// nothing.
+  /// Returns a sentence for each doubtful channel, each CV that no input moves, and each input that moves no
+  /// CV.
   std::vector<std::string> warnings(const Study& study) const;
 };
 
-/// The steps that a study suggests for its inputs (MVs and then MDs): 2 % of the range of an MV between its
-/// hard limits, the largest step of an MD in the study; NaN where there is none.
+/// Returns the steps that a study suggests for its inputs (MVs and then MDs): for an MV 2 % of the range
+/// between its hard limits, for an MD its largest step in the study. NaN if the study suggests none.
 Eigen::VectorXd usual_steps(const Study& study);
 
-/// Steps the plant and fits each response. Errors: as step_test(), and InputError("--step") where no step
-/// moves a CV.
+/// Steps the plant and fits each response. Errors: as step_test(), and InputError("--step") if no step moves
+/// a CV.
 IdentifiedModel identified_model(const Study& study, const StepTestOptions& test);
 
-/// The model as the table [plant] of a study file, with comments on the fit of each channel.
+/// Returns the model as the table [plant] of a study file, with comments on the fit of each channel.
 std::string model_toml(const Study& study, const IdentifiedModel& model);
 
-/// The responses themselves as CSV, a column CV/INPUT for each channel, which `init --step-response` reads.
+/// Returns the responses themselves as CSV for `init --step-response`, with a column CV/INPUT for each
+/// channel.
 std::string step_response_csv(const Study& study, const IdentifiedModel& model);
 
 }  // namespace mpm

@@ -21,13 +21,13 @@ namespace mpm {
 namespace {
 
 constexpr std::size_t kMostRecordedMoves = 10000;
-constexpr double kFirstTolerance = 0.01;  // of the standard deviation of an MD
+constexpr double kFirstTolerance = 0.01;  // in standard deviations of an MD
 constexpr double kFewestMissing = 0.001;
 constexpr double kMostBackground = 0.75;     // standard deviations of the noise
 constexpr double kLongestBackground = 20.0;  // samples
 constexpr std::string_view kTrialTitle = "Calibration run: ";
 
-/// The table under `key`, made when it is not there.
+/// Returns the table under `key`, which is created if it does not exist.
 toml::table& table_in(toml::table& owner, std::string_view key) {
   return *owner.insert(key, toml::table()).first->second.as_table();
 }
@@ -36,7 +36,7 @@ const std::string& name_at(const std::vector<PlantModel::Variable>& variables, E
   return variables[static_cast<std::size_t>(i)].name;
 }
 
-/// Samples at which a signal is no longer within `tolerance` of its last move.
+/// Returns the samples at which a signal is no longer within `tolerance` of its value at the last move.
 std::vector<Eigen::Index> moves_of(const Eigen::RowVectorXd& signal, double start, double tolerance) {
   std::vector<Eigen::Index> moves;
   double level = start;
@@ -68,7 +68,8 @@ void add_md_steps(const Study& study, const Eigen::MatrixXd& d, toml::array& ste
       steps.push_back(toml::table{{"md", name_at(study.plant.mds, md)}, {"sample", k}, {"level", d(md, k)}});
 }
 
-/// Setpoints that were recorded: the first one is that of the controller, the others are steps.
+/// Adds the recorded setpoints: the first value becomes the setpoint of the controller, later changes become
+/// steps.
 void add_setpoints(const Study& study, const Eigen::MatrixXd& y_set, toml::table& text, toml::array& steps) {
   for (Eigen::Index cv = 0; cv < y_set.rows(); ++cv) {
     if (!study.controller.has_setpoint(cv) || std::isnan(y_set(cv, 0)))
@@ -102,7 +103,8 @@ toml::array limit_steps(const Study& study, const PlantRecord& record) {
   return steps;
 }
 
-/// A table for each time that a variable is off, and for each move of an MV while it is.
+/// Returns a table for each period in which a variable is off. A move of an MV that is off starts a new
+/// table.
 toml::array off_spells(const Study& study, const PlantRecord& record) {
   toml::array spells;
   const auto add = [&](const char* sort, const std::string& name, Eigen::Index begin, Eigen::Index end) {
@@ -140,7 +142,7 @@ const char* word_of(GapFill fill) {
   return "none";
 }
 
-/// Share of the samples of the CVs that are missing, and the mean length of a gap.
+/// Returns the share of the samples of the CVs that are missing, and the mean length of a gap.
 toml::table missing_of(const Eigen::MatrixXd& y, GapFill fill) {
   double missing = 0.0, gaps = 0.0;
   for (Eigen::Index cv = 0; cv < y.rows(); ++cv)
@@ -160,9 +162,10 @@ toml::table spread(double low, double high) {
   return toml::table{{"uniform", toml::array{low, high}}};
 }
 
-/// A world for every loop of a kind. Uniform errors with the standard deviation e end at e sqrt 3.
+/// Returns a world for every loop of a kind. Uniform errors with the standard deviation e range from -e sqrt
+/// 3 to e sqrt 3.
 toml::table imperfect_worlds(const Study& study, const TrialPlan& plan) {
-  // Nobody asks what the repair of each channel of a simulated record brings: one loop a channel.
+  // The gain of a repair is of no interest for a simulated record, so no loops are spent on it.
   toml::table world{
       {"count", std::max({1, plan.healthy, plan.faulty})}, {"cost_loops", 1}, {"repair_loops", 0}};
   if (!study.nonlinear)
@@ -255,7 +258,7 @@ Study trial_study(const Study& recorded, const TrialPlan& plan) {
       toml::table{
           {"mpm", plan.faulty - ud - mpm_ud}, {"ud", ud}, {"mpm_ud", mpm_ud}, {"healthy", plan.healthy}});
   text.erase("monitoring");
-  text.erase("methods");  // they change no loop
+  text.erase("methods");  // methods change no loop
   table_in(text, "record").erase("missing");
   if (plan.model_error > 0.0)
     text.insert_or_assign("world", imperfect_worlds(recorded, plan));

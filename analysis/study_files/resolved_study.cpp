@@ -18,7 +18,8 @@ namespace mpm {
 
 namespace {
 
-/// A key whose default is what studies without it do. Later ones go to the end.
+/// Keys that were added later. The default of each is what studies without the key do. Append new ones at the
+/// end.
 constexpr std::array kLaterKeys{"diagnosis.impact",           "other.valve_start",
                                 "other.weights.sensor_stuck", "other.weights.stick_slip",
                                 "other.weights.friction",     "record.sampling",
@@ -58,7 +59,7 @@ std::string lasting_text(const Study& study) {
   for (const TomlDraft::Line& line : draft.lines())
     if (line.value == line.fallback && std::count(kLaterKeys.begin(), kLaterKeys.end(), line.path) > 0)
       left_out.insert(line.path);
-  struct Section {  // a table with its heading, or what stands before the first one
+  struct Section {  // a table with its heading, or the text before the first table
     std::string text;
     bool has_keys = false, lacks_keys = false;
   };

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::string_view kPlaceholder = "value";
 
-/// A table whose only value is this one, under kPlaceholder. A line break would begin another key.
+/// Returns a table with this value alone, under kPlaceholder. Refuses a line break, which would begin another
+/// key.
 toml::table parse_value(const std::string& value, const std::string& name) {
   if (value.find('\n') != std::string::npos)
     throw InputError(name, "a line break in a value", "a value of one line");
@@ -34,7 +35,7 @@ std::vector<std::string> split_at_dots(const std::string& key) {
   return parts;
 }
 
-/// The table in the list whose key `name` has this value.
+/// Returns the table in the list whose key `name` has this value.
 toml::table& named_entry(toml::array& list, const std::string& name, const std::string& where) {
   std::vector<std::string> names;
   for (toml::node& entry : list) {
@@ -50,7 +51,7 @@ toml::table& named_entry(toml::array& list, const std::string& name, const std::
   throw InputError(where, with_nearest(name, names), fmt::format("{}", fmt::join(names, ", ")));
 }
 
-/// The table in which the last part of the key stands; one that is not there yet begins empty.
+/// Returns the table that holds the last part of the key. Tables that do not exist are created empty.
 toml::table& owner_of_last(toml::table& study, const std::vector<std::string>& parts,
                            const std::string& where) {
   toml::table* owner = &study;
@@ -94,8 +95,7 @@ void refuse_missing(const std::string& what, const std::string& name, const std:
 void require_what_rows_name(const ThesisTable& table, const std::string& label) {
   for (const TableRow& row : table.rows) {
     const Study& study = table.studies.at(row.variant);
-    std::vector<std::string> scenarios, cvs{""},
-        mvs{""};  // a cell of the loop, or without a channel, has none
+    std::vector<std::string> scenarios, cvs{""}, mvs{""};  // a cell of the whole loop has neither
     for (const Scenario& scenario : study.scenarios)
       scenarios.push_back(scenario.name);
     for (const PlantModel::Variable& cv : study.plant.cvs)

@@ -6,33 +6,33 @@
 #include "analysis/study_files/thesis_table.hpp"
 #include "scenarios/study/study.hpp"
 
-// One key of a study with another value, from a command line.
+// Changes of single keys of a study, from a command line.
 
 namespace mpm {
 
-/// "controller.mv.v1.move_suppression" and "10".
+/// A key and its new value, such as "controller.mv.v1.move_suppression" and "10".
 struct StudyChange {
-  std::string key;    ///< with dots; an entry of a list of tables by its name: "scenario.M3.parameter"
-  std::string value;  ///< as it stands in a study file (TOML); empty: the key is taken out
+  std::string key;    ///< with dots; a table in a list is given by its name: "scenario.M3.parameter"
+  std::string value;  ///< as in a study file (TOML); if empty, the key is removed
 };
 
-/// The change that "KEY=VALUE" asks for. Errors: InputError without "=" or without a key, or for a value that
-/// is no TOML.
+/// Reads a change "KEY=VALUE". Errors: InputError for a missing "=", a missing key, or a value that is not
+/// valid TOML.
 StudyChange parse_study_change(const std::string& text);
 
-/// The changes that several of them ask for.
+/// Reads several changes "KEY=VALUE".
 std::vector<StudyChange> parse_study_changes(const std::vector<std::string>& texts);
 
-/// The study whose text has these values, laid over it in their order as those of a variant
-/// (read_study_variant()); without changes the study itself. `name` stands for the file in messages, and
-/// paths in the study are from its folder.
+/// Returns the study with these changes, which are laid over its text in their order like those of a variant
+/// (read_study_variant()). Without changes, returns the study itself. `name` stands for the file in messages,
+/// and paths in the study are relative to its folder.
 ///
-/// Errors: InputError for a name that is not in its list, a key to be taken out that is not there; as
-/// load_study() for what comes out, which refuses unknown keys.
+/// Errors: InputError for a name that is not in its list, or for a key to be removed that the study does not
+/// have; as load_study() for the changed study, which also refuses unknown keys.
 Study changed_study(const Study& study, const std::vector<StudyChange>& changes, const std::string& name);
 
-/// Makes these changes to every study of the table, after those of its variants. Errors: as changed_study();
-/// InputError when a scenario, CV or MV that the rows name is gone.
+/// Makes these changes to every study of the table, after the changes of its variants. Errors: as
+/// changed_study(); InputError if the changes remove a scenario, CV or MV that a row names.
 void change_studies(ThesisTable& table, const std::vector<StudyChange>& changes);
 
 }  // namespace mpm

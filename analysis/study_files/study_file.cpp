@@ -29,7 +29,7 @@ OptionKeys heading_keys(Study& study) {
               .required()};
 }
 
-/// The whole study file. `folder` is that of the file.
+/// The keys of the whole study file. `folder` is that of the file.
 OptionKeys study_keys(Study& study, const std::filesystem::path& folder) {
   OptionKeys keys{key::table(
                       "study", [&study] { return heading_keys(study); }, "name of the study")
@@ -54,7 +54,7 @@ OptionKeys study_keys(Study& study, const std::filesystem::path& folder) {
   document.table(table, key_names(study_file_keys(table))).refuse(key, found, allowed);
 }
 
-/// A CV of which no analysis is there by the end of the record is never measured.
+/// Refuses a CV whose first analysis arrives after the end of the record: it would never be measured.
 void refuse_silent_analysers(const TomlTable& document, const Study& study) {
   const std::vector<AnalyserTiming>& timings = study.controller.analysers;
   for (std::size_t cv = 0; cv < timings.size(); ++cv)
@@ -67,7 +67,8 @@ void refuse_silent_analysers(const TomlTable& document, const Study& study) {
                       study.simulation.samples));
 }
 
-/// The moving windows of (6.13) and (6.14), in samples, against the horizon and the length of the record.
+/// Checks the moving windows of (6.13) and (6.14), in samples, against the horizon and the length of the
+/// record.
 void refuse_unusable_windows(const TomlTable& document, const Study& study) {
   const WindowScan scan = window_scan(study);
   if (scan.shortest < kShortestWindow) {
@@ -130,7 +131,7 @@ Study parse_study(std::string_view text, const std::string& file_name,
 
 namespace {
 
-/// With what parse_study() leaves for the first loop. The file is the user's own.
+/// Loads the parts that parse_study() leaves until the first loop. The file must be the user's own.
 Study with_outside_parts(Study study) {
   trust_programs_of(study);
   if (study.nonlinear && study.nonlinear->model.foreign)

@@ -15,13 +15,13 @@ namespace mpm {
 namespace {
 
 constexpr std::int64_t kMaxResponse = 100'000;
-constexpr std::int64_t kFewestReplications = 100;  // below, a 95 % interval is made of two or three values
+constexpr std::int64_t kFewestReplications = 100;  // with fewer, two or three values make a 95 % interval
 constexpr std::int64_t kMaxReplications = 1'000'000;
 constexpr double kMaxWindow = 1000;  // in prediction horizons
 constexpr std::size_t kMostMultipliers = 1000;
 
-/// CVs whose soft limit is active. Section 6.3: no more of them than `most`, and a limit must be there to be
-/// active.
+/// Refuses a wrong list of CVs whose soft limit is active. Section 6.3: at most `most` CVs, each with a soft
+/// limit.
 void refuse_wrong_active(const TomlTable& table, const char* key, const std::vector<Eigen::Index>& active,
                          const Study& study, std::size_t most, const char* of) {
   for (const Eigen::Index cv : active)
@@ -35,8 +35,8 @@ void refuse_wrong_active(const TomlTable& table, const char* key, const std::vec
                  fmt::format("at most as many as {}, {}", of, most));
 }
 
-/// A step of a soft limit into the range must not cross the opposite one. CVs without a range (equal limits)
-/// have no opposite one.
+/// Returns the narrowest range of the active CVs: a step of a soft limit into the range must not cross the
+/// opposite limit. CVs without a range (equal limits) do not count.
 double narrowest_range(const MpcOptions& controller, const std::vector<Eigen::Index>& active) {
   double narrowest = kInfinity;
   for (Eigen::Index i = 0; i < controller.cv_soft.lower.size(); ++i) {
@@ -57,8 +57,7 @@ OptionKeys sensitivity_keys(Study& study) {
   };
   const auto check_all = [&study](const TomlTable& table) {
     const SensitivityOptions& read = study.sensitivity;
-    // A structure for every set of constraints, identified in the middle of an experiment, would take
-    // minutes.
+    // Identifying a structure for every set of constraints in the middle of an experiment would take minutes.
     if (read.form == SensitivityForm::box_jenkins && read.structure == SensitivityStructure::by_instant)
       table.refuse("form", "'box-jenkins' with the structure 'by-instant'",
                    "'step-response' with it, or 'box-jenkins' with 'operating-point'");
@@ -200,7 +199,7 @@ OptionKeys share_keys(ReportedValue& share) {
               .required()};
 }
 
-/// Which names there are is known to the findings, not to the reader.
+/// Only the findings know which names exist, so the reader accepts all.
 void read_reported(const TomlTable& document, const std::string& key, std::vector<ReportedValue>& values) {
   std::vector<std::string> names;
   if (const toml::table* const findings = document.find(key)->as_table())

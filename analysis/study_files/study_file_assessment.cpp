@@ -61,7 +61,7 @@ OptionKeys methods_keys(std::vector<std::string>& names) {
           .allow("names of methods, each once")};
 }
 
-/// A table that turns on what only a study of random experiments has.
+/// A table that turns on a feature that only studies of random experiments have.
 template <class Options>
 OptionKey random_part(const char* name, Study& study, std::optional<Options> Study::*part,
                       OptionKeys (*keys)(Options&, const Study&), const char* meaning) {
@@ -98,7 +98,8 @@ OptionKeys monitoring_keys(MonitoringOptions& options, const Study& study) {
 }
 
 OptionKeys calibration_keys(CalibrationOptions& options, const Study& study) {
-  // Loops of the same seed would be those that the thresholds are tried on.
+  // With the seed of the study, the calibration loops would be the very loops on which the thresholds are
+  // tried.
   const auto read_seed = [&](const TomlTable& table, const std::string& key) {
     options.seed =
         static_cast<std::uint64_t>(read_whole(table, key, 0, std::numeric_limits<std::int64_t>::max()));

@@ -16,9 +16,10 @@ namespace {
 // Bounds on the size of the matrices and of the history of inputs that a file can ask for.
 constexpr std::int64_t kMaxHorizon = 2000;
 constexpr double kMostProgramNumbers =
-    5e7;  // of the quadratic program, which a controller holds several times
+    5e7;  // numbers in the quadratic program; a controller holds several copies
 
-/// A flow into a level that is not known is found within some twenty samples; more makes the moves noisier.
+/// Default for CVs that integrate: an unknown flow into a level is found within about twenty samples. A
+/// larger value makes the moves noisier.
 constexpr double kBiasRamp = 0.05;
 
 void set_limits(Limits& limits, Eigen::Index i, const NumberPair& range) {
@@ -33,7 +34,7 @@ struct MvOptions {
 };
 
 OptionKeys keys(MvOptions& mv) {
-  // A cost decides where the target lies: an MV with a target has to say it.
+  // The cost decides where the target lies, so an MV with a target must have one.
   const auto read_cost = [&mv](const TomlTable& table) {
     const bool rests = table.has("resting_weight");
     if (rests != table.has("resting_value"))
@@ -92,7 +93,7 @@ struct CvOptions {
   AnalyserTiming analyser;
 };
 
-/// A CV has a setpoint, a soft range, or both.
+/// Reads a CV, which has a setpoint, a soft range, or both.
 void read_setpoint_and_range(const TomlTable& table, CvOptions& cv) {
   const bool has_setpoint = table.has("setpoint_weight");
   if (table.has("setpoint") && !has_setpoint)
@@ -169,7 +170,7 @@ OptionKeys keys(AnalyserTiming& md) {
 
 enum class Tables { of_all, of_some };
 
-/// One table for each of the variables, or for some of them, none more.
+/// A table of tables, one for each of the variables, or for some of them; other names are refused.
 template <class Variable>
 OptionKey variable_tables(const char* name, const std::vector<PlantModel::Variable>& variables,
                           std::function<void(const TomlTable&, Eigen::Index, const Variable&)> take,
@@ -213,7 +214,8 @@ void resize(Study& study) {
   options.cv_soft = Limits::none(cvs);
 }
 
-/// A controller keeps as many past inputs as the longest dead time has samples, or the longest coefficients.
+/// Refuses dead times and step coefficients of too many samples: a controller keeps past inputs over the
+/// longest of them.
 void refuse_long_dead_times(const TomlTable& controller, const Study& study) {
   const double sample_time = study.controller.sample_time;
   for (Eigen::Index row = 0; row < study.plant.G.rows(); ++row)
@@ -230,8 +232,8 @@ void refuse_long_dead_times(const TomlTable& controller, const Study& study) {
       }
 }
 
-/// The quadratic program has a column for each planned move, and a row for each of them and each predicted
-/// output.
+/// Refuses a quadratic program that is too large. It has a column for each planned move, and a row for each
+/// planned move and each predicted output.
 void refuse_large_program(const TomlTable& controller, const Study& study) {
   const auto outputs = static_cast<double>(study.cv_count() * study.controller.prediction_horizon);
   const auto of_sample = static_cast<double>(study.mv_count());
@@ -342,7 +344,8 @@ OptionKeys controller_keys(Study& study) {
                       "price of one unit of steady-state violation of a soft limit, in multiples of the "
                       "largest `cost`. Open: (6.19) has no solution if no target keeps the limits",
                       "1"),
-          // Not written when it is left out: finished boards have the digests of studies without it.
+          // A resolved study has this key only if the study sets it: finished boards have the digests of
+          // studies without it.
           key::option("solver_time_limit", "number",
                       "processor time that Ipopt may take for one problem, alone or instead of the "
                       "active-set method; a loop that needs more is `failed`",

@@ -17,7 +17,7 @@ namespace {
 
 using Variables = std::function<std::vector<std::string>()>;
 
-/// A table with something for some of the variables.
+/// A table with a value for some of the variables.
 template <class Value, class Read>
 OptionKey group(const char* name, const char* type, std::map<std::string, Value>& group, Variables variables,
                 Read read_value, const char* meaning) {
@@ -45,7 +45,7 @@ OptionKey factors(const char* name, DataOptions::Numbers& numbers, Variables var
       meaning);
 }
 
-/// One of these texts.
+/// A key whose value is one of `words`.
 OptionKey one_word(const char* name, std::string& value, std::vector<std::string> words,
                    const char* meaning) {
   return key::option(name, "text", meaning)
@@ -54,7 +54,7 @@ OptionKey one_word(const char* name, std::string& value, std::vector<std::string
       });
 }
 
-/// Two time stamps.
+/// Reads two time stamps.
 std::vector<std::string> read_period(const TomlTable& data, const std::string& key) {
   std::vector<std::string> stamps = read_texts_or(data, key, "time stamps as texts, first and last", {});
   if (stamps.size() != 2)
@@ -62,7 +62,7 @@ std::vector<std::string> read_period(const TomlTable& data, const std::string& k
   return stamps;
 }
 
-/// The first lines, or a list of lines.
+/// Reads the lines to skip: the number of first lines, or a list of lines.
 std::vector<int> read_skipped(const TomlTable& data, const std::string& key) {
   constexpr int kMostLines = 1000;
   const NumberRule rule{.low = 1, .high = kMostLines, .low_included = true, .high_included = true};

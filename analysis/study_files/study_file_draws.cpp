@@ -1,4 +1,4 @@
-// [experiments] and what random experiments are drawn from.
+// [experiments] and the distributions from which random experiments are drawn.
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::int64_t kMaxExperiments = 10'000'000;  // of one kind; the sum still is an int
+constexpr std::int64_t kMaxExperiments = 10'000'000;  // of one kind; the sum of all kinds is still an int
 
 /// A table that only a study of random experiments has.
 OptionKey random_table(const char* name, std::function<OptionKeys()> below, const char* meaning) {
@@ -33,7 +33,7 @@ OptionKey random_table(const char* name, std::function<OptionKeys()> below, cons
   return made;
 }
 
-/// The size of an effect (FaultScales).
+/// The key of the size of an effect (FaultScales).
 OptionKey impact_key(std::optional<Distribution>& impact, const char* meaning, const char* unit) {
   return key::option("impact", "distribution", meaning, unit)
       .otherwise("none: sizes as drawn")
@@ -43,8 +43,8 @@ OptionKey impact_key(std::optional<Distribution>& impact, const char* meaning, c
       });
 }
 
-/// Relative frequencies of the values of `of`, each with its meaning; those after the first `required` may be
-/// left out.
+/// Relative frequencies of the values of `of`, each with its meaning. The frequencies after the first
+/// `required` may be left out.
 template <std::size_t n, class Enum>
 OptionKey weights_key(const char* name, const std::array<Enum, n>& of, std::size_t required,
                       std::array<double, n>& weights, const std::vector<const char*>& meanings,
@@ -59,7 +59,7 @@ bool all_zero(std::span<const double> weights) {
   return std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; });
 }
 
-/// Refuses the table of weights under `key` when all of them are 0.
+/// Refuses the table of weights under `key` if all of them are 0.
 OptionKey refuse_no_weight(const char* key, std::span<const double> weights) {
   return key::check([key, weights](const TomlTable& table) {
     if (all_zero(weights))
@@ -91,7 +91,7 @@ OptionKeys experiments_keys(ExperimentCounts& counts) {
       })};
 }
 
-/// Smallest dead time of the channels that a mismatch can change.
+/// Returns the smallest dead time of the channels that a mismatch can change.
 double shortest_dead_time(const Study& study) {
   double shortest = kInfinity;
   for (const auto& [cv, mv] : mismatch_channels(study))
@@ -124,7 +124,8 @@ OptionKey mismatch_channels_key(Study& study) {
       .read(read);
 }
 
-/// With both faults the disturbance is on the CV of the mismatch, which must be one of these.
+/// Sorts the disturbed CVs. In an experiment with both faults the disturbance is on the CV of the mismatch,
+/// so every CV that a mismatch can affect must be among them.
 void check_disturbed_cvs(const TomlTable& table, Study& study) {
   std::vector<Eigen::Index>& cvs = study.disturbance.cvs;
   std::sort(cvs.begin(), cvs.end());
@@ -138,7 +139,8 @@ void check_disturbed_cvs(const TomlTable& table, Study& study) {
                    "every CV of mismatch.channels, or mpm_ud = 0");
 }
 
-/// In each channel some draw must leave a dead time >= 0, since draws are confined to those that do.
+/// Refuses shifts of which no draw leaves a dead time >= 0 in some channel, since only draws that do are
+/// used.
 void refuse_impossible_shift(const TomlTable& mismatch, const Study& study) {
   const Distribution& shift = study.mismatch.dead_time_shift;
   const double lowest = -shortest_dead_time(study);
@@ -150,7 +152,8 @@ void refuse_impossible_shift(const TomlTable& mismatch, const Study& study) {
   }
 }
 
-/// What the channels of a plant remember is memory of the program.
+/// Refuses draws with which a channel looks back over too many samples, because they take memory of the
+/// program.
 void refuse_long_channels(const TomlTable& mismatch, const Study& study) {
   const MismatchRanges& ranges = study.mismatch;
   if (study.nonlinear || study.experiments.mpm + study.experiments.mpm_ud == 0)
@@ -184,7 +187,7 @@ void refuse_long_channels(const TomlTable& mismatch, const Study& study) {
 
 OptionKeys mismatch_ranges_keys(Study& study) {
   MismatchRanges& ranges = study.mismatch;
-  constexpr std::size_t kClassic = 3;  // those of table 6.4, without which the others do not stand
+  constexpr std::size_t kClassic = 3;  // those of table 6.4, required with any of the others
   const NumberRule positive = NumberRule::positive();
   return {
       mismatch_channels_key(study),

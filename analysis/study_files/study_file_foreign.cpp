@@ -1,4 +1,4 @@
-// The keys of a study whose plant somebody else simulates.
+// The keys of a study whose plant is simulated by an FMU or by another program.
 
 #include <algorithm>
 #include <filesystem>
@@ -18,17 +18,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostForeignVariables = 1000;  // a bound on what a file can make the program do
+constexpr std::size_t kMostForeignVariables = 1000;  // limits the work that a file can cause
 
 /// An entry of the lists `input`, `output` and `parameter`.
 struct ForeignVariable {
   std::string name, variable;
   double value = 0.0;
-  FmuSettings::Variable place = {};  ///< the variable of an FMU: that which it names, or that of its own name
+  FmuSettings::Variable place = {};  ///< the variable of the FMU: `variable`, or `name` if that is empty
 };
 using ForeignVariables = std::vector<ForeignVariable>;
 
-/// What [plant.fmu] and [plant.program] say.
+/// The values of [plant.fmu] and [plant.program].
 struct ForeignPlant {
   std::string file;
   std::vector<std::string> command;
@@ -37,7 +37,7 @@ struct ForeignPlant {
   ForeignVariables inputs, outputs, parameters;
 };
 
-/// A list of variables, none of which has the name of another.
+/// A list of variables with distinct names.
 OptionKey variables(const char* name, ForeignVariables& group,
                     std::function<OptionKeys(ForeignVariable&)> keys, const char* meaning) {
   return key::list<ForeignVariable>(
@@ -170,7 +170,7 @@ const ForeignVariable* entry_of(const ForeignVariables& entries, const std::stri
   return nullptr;
 }
 
-/// The inputs: MVs and MDs, in the order of the plant, and then the inner inputs.
+/// Returns the inputs: MVs and MDs in the order of the plant, and then the inner inputs.
 ForeignVariables ordered_inputs(const TomlTable& table, const ForeignVariables& entries,
                                 const PlantModel& plant, NonlinearModel& model) {
   ForeignVariables inputs;
@@ -192,7 +192,8 @@ ForeignVariables ordered_inputs(const TomlTable& table, const ForeignVariables& 
   return inputs;
 }
 
-/// A path of the study file: from its folder or, when nothing is there, from the current one.
+/// Returns the path of a file that the study file names: relative to its folder or, if no such file exists,
+/// to the current one.
 fs::path file_beside(const fs::path& folder, const fs::path& file) {
   std::error_code no_status;
   const fs::path beside = folder / file;

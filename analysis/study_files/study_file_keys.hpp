@@ -7,12 +7,12 @@
 
 namespace mpm {
 
-/// All tables of the study file, made from what the reader reads. "DISTRIBUTION" stands for the inline table
-/// of a random number, wherever it stands, and "FINDING" for the name of any finding. The top level has the
-/// empty name. Of the keys, which refer to no study, only the texts may be used.
+/// Returns all tables of the study file, made from the keys of the reader. "DISTRIBUTION" stands for the
+/// inline table of a random number in any place, and "FINDING" for the name of any finding. The top level has
+/// the empty name. Only the texts of the keys may be used, because the keys refer to no study.
 const std::vector<KeyTable>& study_file_tables();
 
-/// The keys of one table, which must be there.
+/// Returns the keys of one table, which must exist.
 const OptionKeys& study_file_keys(std::string_view table);
 
 }  // namespace mpm

@@ -17,7 +17,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kMaxParameters = 200;  // a bound on what a file can make the program do
+constexpr std::size_t kMaxParameters = 200;  // limits the work that a file can cause
 constexpr const char* kNonlinear = "plant.simulated = \"nonlinear\", plant.fmu or plant.program";
 
 OptionKeys integration_keys(OdeOptions& options) {
@@ -43,7 +43,7 @@ OptionKey simulated_key(bool& nonlinear) {
       .allow("`\"linear\"`, or `\"nonlinear\"` for a catalogue plant that has [a nonlinear form](plants.md)");
 }
 
-/// The catalogue plants that have a nonlinear form.
+/// Returns the names of the catalogue plants that have a nonlinear form.
 std::string nonlinear_names() {
   std::string names;
   for (const std::string& name : benchmark_plant_names())
@@ -52,7 +52,7 @@ std::string nonlinear_names() {
   return names;
 }
 
-/// The parameter that the key `name` names.
+/// Returns the parameter that the key `name` names.
 const NonlinearModel::Parameter& read_parameter(const TomlTable& table, const NonlinearModel& model) {
   std::vector<std::string> names;
   for (const NonlinearModel::Parameter& parameter : model.parameters)

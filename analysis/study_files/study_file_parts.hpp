@@ -11,51 +11,53 @@
 #include "scenarios/toml/toml_draft.hpp"
 #include "scenarios/toml/toml_table.hpp"
 
-// The keys of the study file, one source file for each group of tables. They are read into `study`, in the
-// order of the top level, and may depend on what was read before. All refuse what they cannot take as
+// The keys of the study file, with one source file for each group of tables. They are read into `study` in
+// the order of the top level and may depend on values that were read before. All refuse wrong values as
 // TomlTable does.
 
 namespace mpm {
 
-/// The whole study file (study_file.cpp); see parse_study(). `draft`, whose keys are those of the top level,
-/// takes the values in force; null: they are not recorded.
+/// Reads the whole study file (study_file.cpp); see parse_study(). The values in force are recorded in
+/// `draft`, whose keys are those of the top level; if it is null, they are not recorded.
 Study read_study(std::string_view text, const std::string& file_name,
                  std::shared_ptr<const MethodTable> methods, TomlDraft* draft);
 
-/// The values of resolved_study() with their defaults (resolved_study.cpp).
+/// Returns the values of resolved_study() with their defaults (resolved_study.cpp).
 std::vector<TomlDraft::Line> resolved_lines(const Study& study);
 
 /// [plant] (study_file_plant.cpp). `folder` is that of the study file.
 OptionKey plant_key(Study& study, const std::filesystem::path& folder);
 
-/// The keys of [plant] that say how a plant of ours is simulated (study_file_nonlinear.cpp).
+/// The keys of [plant] for the simulation of a plant of the catalogue (study_file_nonlinear.cpp).
 OptionKeys simulated_keys();
 
-/// How the plant of [plant], whose model is `model`, is simulated; none: by this model.
+/// Reads how the plant of [plant], whose model is `model`, is simulated. Returns none if it is simulated by
+/// this model.
 std::optional<NonlinearSimulation> read_nonlinear_simulation(const TomlTable& plant, const PlantModel& model,
                                                              const std::filesystem::path& folder);
 
 /// The keys `fmu` and `program` of [plant] (study_file_foreign.cpp).
 OptionKeys foreign_keys();
 
-/// The plant that [plant.fmu] or [plant.program] of the table `plant` describes.
+/// Reads the plant that [plant.fmu] or [plant.program] of the table `plant` describes.
 NonlinearModel read_foreign_plant(const TomlTable& plant, const PlantModel& model,
                                   const std::filesystem::path& folder);
 
-/// The list `parameter` of a scenario: parameters of the nonlinear plant of `study` that differ.
+/// The list `parameter` of a scenario: changed parameters of the nonlinear plant of `study`.
 OptionKey parameter_changes_key(std::vector<ParameterChange>& changes, const Study& study);
 
 /// The list `plant_parameter` of [mismatch].
 OptionKey plant_parameters_key(std::vector<PlantParameterRange>& ranges, const Study& study);
 
-/// The place of the inner input of the nonlinear plant of `study` that the key `input` of a disturbance
-/// names.
+/// Returns the place of the inner input of the nonlinear plant of `study` that the key `input` of a
+/// disturbance names.
 Eigen::Index read_inner_input(const TomlTable& disturbance, const Study& study);
 
 /// [controller], with the setpoints at the start (study_file_controller.cpp).
 OptionKey controller_key(Study& study);
 
-/// A finite limit of the soft range lies outside of the hard one, where it could never be reached.
+/// Returns whether a finite limit of the soft range lies outside the hard range, where it could never be
+/// reached.
 bool lies_outside(const NumberPair& soft, const NumberPair& hard);
 
 /// [simulation] (study_file_simulation.cpp). The steps are in the order of their samples.

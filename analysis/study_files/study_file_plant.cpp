@@ -89,7 +89,7 @@ OptionKeys own_plant_keys(PlantModel& model) {
           .required()};
 }
 
-/// A mismatch changes a channel from an MV to a CV, so there must be one.
+/// Refuses a plant without a channel from an MV to a CV, because a mismatch changes such a channel.
 void refuse_without_mv_channel(const TomlTable& plant, const PlantModel& model) {
   for (Eigen::Index row = 0; row < model.G.rows(); ++row)
     for (std::size_t mv = 0; mv < model.mvs.size(); ++mv)

@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-constexpr double kMostOutliers = 0.5;  // beyond it the others are the outliers
+constexpr double kMostOutliers = 0.5;  // above it, the other samples would be the outliers
 
 OptionKeys outliers_keys(RecordOptions& options) {
   return {
@@ -21,7 +21,8 @@ OptionKeys outliers_keys(RecordOptions& options) {
                         "deviation added to the sample, up or down", "noise standard deviations")};
 }
 
-/// A gap begins with a probability of at most 1 after each sample that is there.
+/// Refuses a share that is too large for the length: a gap begins with a probability of at most 1 after each
+/// sample that is not missing.
 void check_spells(const TomlTable& table, double share, double length) {
   if (const double largest = length / (length + 1.0); share > largest)
     table.refuse("share", fmt::format("{}", share),
@@ -75,7 +76,7 @@ OptionKeys candidates_keys(RecordOptions& options) {
               "1")};
 }
 
-/// Sizes are in standard deviations of the noise: without noise they would all be 0.
+/// Refuses sizes in standard deviations of the noise if a CV has no noise: they would all be 0.
 void refuse_without_noise(const TomlTable& record, const Study& study) {
   const Eigen::VectorXd& noise = study.simulation.noise_standard_deviation;
   for (const char* key : {"outliers", "quantisation", "bad", "exception", "compression"})
@@ -87,7 +88,7 @@ void refuse_without_noise(const TomlTable& record, const Study& study) {
                       "simulation.noise_standard_deviation > 0 for every CV");
 }
 
-/// One number for all CVs, or a table of variables, of which each has its own.
+/// Reads one number for all CVs, or a table with a number for each variable.
 void read_shifts(const TomlTable& record, const std::string& key, Study& study) {
   RecordOptions& options = study.record;
   const NumberRule rule{.low = -RecordOptions::kMostLate,
@@ -112,7 +113,7 @@ void read_shifts(const TomlTable& record, const std::string& key, Study& study) 
   read(study.plant.mds, options.md_shift);
 }
 
-/// A simulation of somebody else has no values between its samples.
+/// Refuses options that need values between the samples, which a foreign simulation does not have.
 void refuse_between_samples(const TomlTable& record, const Study& study) {
   if (study.nonlinear && study.nonlinear->model.foreign && study.record.looks_between_samples())
     record.refuse(study.record.sampling == OutputSampling::average ? "sampling" : "shift",

@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-// Bounds on what a file can make the program do; far above any table of scenarios.
+// Limits on the work that a file can cause; far above any table of scenarios.
 constexpr std::size_t kMaxScenarios = 1000;
 constexpr std::size_t kMaxFaults = 200;  // of one sort in a scenario
 
@@ -28,13 +28,13 @@ OptionKeys joined(OptionKeys keys, const OptionKeys& others) {
   return keys;
 }
 
-/// Another transfer function instead of a channel.
+/// The keys of a transfer function that replaces a channel.
 OptionKeys other_channel_keys() {
   return transfer_function_keys(
       "input", "poles with negative real parts; one pole may be 0 if the model of the CV has one");
 }
 
-/// A changed parameter of a channel.
+/// The key of a changed parameter of a channel.
 OptionKey change_key(const char* name, MismatchParameter parameter, const NumberRule& rule, Mismatch& at,
                      std::vector<Mismatch>& mismatches, const char* meaning, const char* unit) {
   return key::option(name, "number", meaning, unit)
@@ -59,7 +59,7 @@ OptionKeys change_keys(Mismatch& at, std::vector<Mismatch>& mismatches) {
               .allow("at least minus the dead time")};
 }
 
-/// An entry of the list: a channel with some of its parameters changed, or another channel in its place.
+/// An entry of the list: a channel with some of its parameters changed, or a transfer function in its place.
 struct ListedMismatch {
   Mismatch at{.cv = 0, .input = 0, .parameter = MismatchParameter::channel, .value = kNaN};
   std::vector<Mismatch> mismatches;
@@ -94,7 +94,8 @@ OptionKeys mismatch_keys(ListedMismatch& listed, const Study& study) {
                 {key::check(read_channel)});
 }
 
-/// The channel of the plant must be one that a plant of the study may have, and in the list once.
+/// Takes the mismatches of one channel. The changed channel must be one that a plant of the study may have,
+/// and the list must name it only once.
 void take_mismatches(const TomlTable& table, const std::vector<Mismatch>& of_channel, const Study& study,
                      std::vector<Mismatch>& mismatches) {
   const Mismatch& first = of_channel.front();
@@ -135,7 +136,7 @@ OptionKeys level_keys(StepSequence::Step& step, const StepSequence& before, int 
           key::number("level", step.level, NumberRule::finite(), "level from there on", "CV").required()};
 }
 
-/// The form of a signal: a table with its numbers.
+/// The key of one form of a signal: a table with its numbers.
 template <class Form>
 OptionKey form_key(const char* name, DisturbanceSignal& signal, OptionKeys (*keys)(Form&),
                    const char* meaning) {
@@ -204,7 +205,8 @@ OptionKeys disturbance_model_keys() {
   return transfer_function_keys("v", "poles with negative real parts, or at 0");
 }
 
-/// G_d of a disturbance; a first-order one is kept by its two numbers, as that of a random disturbance.
+/// Reads G_d of a disturbance. A first-order G_d is stored as its two numbers, like that of a random
+/// disturbance.
 void read_model(const TomlTable& table, double sample_time, Disturbance& disturbance) {
   const TransferFunction Gd = read_transfer_function(table).function;
   refuse_growing(table, Gd);
@@ -250,7 +252,7 @@ OptionKeys disturbance_keys(Disturbance& disturbance, const Study& study) {
                 {key::check(read_Gd)});
 }
 
-/// A parameter and an inner input name no CV.
+/// Refuses a scenario that must say which CVs are affected: a parameter or an inner input names no CV.
 void refuse_unknown_truth(const TomlTable& table, const Scenario& scenario) {
   const bool inner =
       std::any_of(scenario.disturbances.begin(), scenario.disturbances.end(),

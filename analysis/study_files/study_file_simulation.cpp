@@ -15,10 +15,11 @@ namespace mpm {
 namespace {
 
 constexpr std::int64_t kMaxSamples = 1'000'000;
-constexpr double kMostRecordNumbers = 5e7;      // of a record of a loop, all variables together
+constexpr double kMostRecordNumbers = 5e7;      // in the record of a loop, over all variables
 constexpr std::size_t kMaxSteps = kMaxSamples;  // of one list
 
-/// One number for all variables, or a table with one each; `each` says what they are.
+/// Reads one number for all variables, or a table with one number for each. `each` says what the variables
+/// are.
 Eigen::VectorXd read_deviations(const TomlTable& parent, const std::string& key, const std::string& each,
                                 const std::vector<std::string>& names) {
   const NumberRule rule = NumberRule::at_least(0);
@@ -54,7 +55,7 @@ OptionKeys noise_keys(NoiseOptions& noise) {
                        "(`diagnosis.self_check`) has others")};
 }
 
-/// The CVs with a setpoint.
+/// Returns the CVs with a setpoint.
 std::vector<Eigen::Index> setpoint_cvs(const MpcOptions& controller) {
   std::vector<Eigen::Index> cvs;
   for (Eigen::Index cv = 0; cv < controller.setpoint_weight.size(); ++cv)
@@ -78,7 +79,8 @@ OptionKeys step_keys(SignalStep& step, int samples) {
               .required()};
 }
 
-/// The steps of the MDs and of the setpoints stand in one list; a step names one of the two.
+/// Takes a step from the list, which has the steps of the MDs and those of the setpoints. A step names either
+/// an MD or a CV.
 void take_step(const TomlTable& table, SignalStep& step, Study& study) {
   const std::vector<std::string> mds = variable_names(study.plant.mds);
   const std::vector<Eigen::Index> cvs = setpoint_cvs(study.controller);
@@ -123,7 +125,7 @@ OptionKeys off_keys(OffSpell& spell, const Study& study) {
               .allow("finite")};
 }
 
-/// With a CV less, something else has to determine the moves.
+/// Refuses a CV that is off if nothing else determines the moves of some MV.
 void refuse_undetermined_moves(const TomlTable& table, const Study& study) {
   const MpcOptions& controller = study.controller;
   for (Eigen::Index mv = 0; mv < study.mv_count(); ++mv)
@@ -153,7 +155,7 @@ void take_off(const TomlTable& table, OffSpell& spell, Study& study) {
   study.simulation.off.push_back(spell);
 }
 
-/// Sorts them; two of one variable at one time are refused.
+/// Sorts the periods in which a variable is off. Refuses two of one variable at the same time.
 void sort_off(const TomlTable& simulation, Study& study) {
   std::vector<OffSpell>& spells = study.simulation.off;
   const auto in_time = [](const OffSpell& a, const OffSpell& b) {
@@ -182,7 +184,7 @@ OptionKeys random_steps_keys(SimulationOptions& options) {
               .allow("any")};
 }
 
-/// A step of soft limits as it stands in the file.
+/// A step of soft limits as written in the file.
 struct ListedLimits {
   Eigen::Index cv = 0;
   int sample = 0;
@@ -201,7 +203,8 @@ OptionKeys limit_step_keys(ListedLimits& step, const Study& study) {
               .allow("low <= high, finite where `controller.cv.NAME.soft` is, within `hard`")};
 }
 
-/// A limit may move where there is one: the problems of the controller have a row for it, and no other.
+/// Takes a step of soft limits. Only a limit that exists may move, because the problems of the controller
+/// have rows for existing limits only.
 void take_limit_step(const TomlTable& table, const ListedLimits& step, Study& study) {
   const auto [cv, sample, range] = step;
   const auto [lower, upper] = range;
@@ -251,8 +254,8 @@ OptionKeys dither_keys(Dither& dither, const Study& study) {
               .allow("1 to `samples`")};
 }
 
-/// MDs are stepped in one of two ways. A loop without any excitation has to be asked for by name: what the
-/// variances then compare is noise.
+/// Reads the excitation. MDs are stepped in one of two ways. A loop without any excitation must be asked for
+/// explicitly, because its variances compare nothing but noise.
 void read_excitation(const TomlTable& simulation, Study& study) {
   SimulationOptions& options = study.simulation;
   const bool has_mds = !study.plant.mds.empty();

@@ -20,7 +20,7 @@ constexpr std::int64_t kMostWorlds = 10'000, kMostCostLoops = 10'000;
 constexpr std::size_t kMostParameters = 200;
 constexpr const char* kNoLongMemory = "no channel looks back over more than 1e6 samples";
 
-/// Sizes are parts of what must be there.
+/// Refuses sizes relative to a noise or a hard limit that does not exist.
 void refuse_sizes_of_nothing(const TomlTable& background, const BackgroundRanges& ranges,
                              const Study& study) {
   const Eigen::VectorXd& noise = study.simulation.noise_standard_deviation;
@@ -82,7 +82,8 @@ OptionKeys parameter_keys(WorldParameter& parameter, const Study& study) {
           key::check(check_ends)};
 }
 
-/// What channels remember is memory of the program.
+/// Refuses draws with which a channel looks back over too many samples, because they take memory of the
+/// program.
 void refuse_long_world(const TomlTable& world, const WorldRanges& ranges, const Study& study) {
   const TransferMatrix& G = study.plant.G;
   for (Eigen::Index cv = 0; cv < G.rows() && !study.nonlinear; ++cv)
@@ -109,7 +110,7 @@ void refuse_long_world(const TomlTable& world, const WorldRanges& ranges, const 
 
 OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
   const NumberRule positive = NumberRule::positive(), rule = NumberRule::at_least(0);
-  // A resolved study has the defaults of channels beside parameters of the plant.
+  // A resolved study of a plant with parameters also has the keys of channels, with their defaults.
   const auto refuse_channels = [&ranges, &study](const TomlTable& world) {
     const WorldRanges none;
     for (const auto& [key, range] : {std::pair("gain_factor", &WorldRanges::gain_factor),
@@ -192,7 +193,7 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
 }  // namespace
 
 OptionKey world_key(Study& study) {
-  // The keys refer to both, and so do those of the tables below them.
+  // The keys, and those of the tables below them, refer to both objects, which must therefore stay alive.
   const auto below = [no_study = std::make_shared<Study>(), ranges = std::make_shared<WorldRanges>()] {
     return world_keys(*ranges, *no_study);
   };

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kStudyExtension = ".toml";
 
-/// The study files of a folder, sorted.
+/// Returns the study files of a folder, sorted.
 std::vector<fs::path> study_files(const fs::path& directory) {
   std::error_code error;
   std::vector<fs::path> files;

@@ -29,26 +29,26 @@ constexpr const char* kCostNote =
     "sign\n"
     "# says to which end the optimizer drives the MV, and can decide a verdict\n";
 
-constexpr double kStepsOfFastest = 10.0;  // samples in the smallest time constant, unless that makes ...
+constexpr double kStepsOfFastest = 10.0;  // samples in the shortest channel, unless this gives ...
 constexpr double kMostSamples = 150.0;    // ... more than this until the slowest channel has settled
-constexpr double kSeenBehind = 3.0;       // dead times in the horizon: what an MV does is seen in it
+constexpr double kSeenBehind = 3.0;       // dead times in the horizon, so that it shows the effect of an MV
 constexpr double kNoise = 0.01;           // of the size of a CV
 
 double rounded(double value) {
   return std::stod(fmt::format("{:.2g}", value));
 }
 
-/// What a template is computed from.
+/// The quantities from which a template is computed.
 struct Guess {
   explicit Guess(const StudySketch& sketch);
 
-  double shortest = kInfinity, longest = 0.0;  ///< sum of the time constants of a channel
-  double settled = 0.0;                        ///< of the slowest channel
-  double dead_time = 0.0;                      ///< largest
+  double shortest = kInfinity, longest = 0.0;  ///< sums of the time constants of a channel
+  double settled = 0.0;                        ///< settling time of the slowest channel
+  double dead_time = 0.0;                      ///< the largest
   double sample_time = 0.0;
   int prediction_horizon = 0, samples = 0;
-  Eigen::VectorXd size;  ///< of the CVs: that of their setpoint steps, or half of their range
-  Eigen::MatrixXd gain;  ///< static, in parts of these sizes
+  Eigen::VectorXd size;  ///< of each CV: that of its setpoint steps, or half of its range
+  Eigen::MatrixXd gain;  ///< static, relative to these sizes
 };
 
 void require(const StudySketch& sketch) {
@@ -92,11 +92,11 @@ Guess::Guess(const StudySketch& sketch) : size(sketch.size), gain(sketch.plant.G
       dead_time = std::max(dead_time, channel.dead_time());
     }
   }
-  if (shortest == kInfinity)  // gains and dead times alone
+  if (shortest == kInfinity)  // only gains and dead times
     shortest = longest = settled = std::max(dead_time, 1.0);
   settled = std::max(settled, kSeenBehind * dead_time);
   for (Eigen::Index cv = 0; cv < G.rows(); ++cv)
-    if (G.is_integrating(cv))  // what it moves until the others have settled
+    if (G.is_integrating(cv))  // its move until the others have settled
       gain.row(cv) *= settled;
   sample_time =
       sketch.sample_time.value_or(rounded(std::max(shortest / kStepsOfFastest, settled / kMostSamples)));
@@ -164,8 +164,8 @@ void write_plant(TomlDraft& document, const PlantModel& plant) {
     }
 }
 
-/// Costs drive every CV that has a range and does not integrate to its upper limit: in the row space of the
-/// gains, they are bounded there, whatever the MVs may do.
+/// Writes the MVs. Their costs drive every CV that has a range and does not integrate to its upper limit. The
+/// costs lie in the row space of the gains, so that the optimum is bounded whatever the limits of the MVs.
 void write_mvs(TomlDraft& controller, const StudySketch& sketch, const Guess& guess) {
   const bool ranges = std::any_of(sketch.ranges.begin(), sketch.ranges.end(),
                                   [](const auto& range) { return range.has_value(); });
@@ -183,7 +183,7 @@ void write_mvs(TomlDraft& controller, const StudySketch& sketch, const Guess& gu
       for (std::size_t cv = 0; cv < sketch.ranges.size(); ++cv)
         if (sketch.ranges[cv] && !sketch.plant.G.is_integrating(static_cast<Eigen::Index>(cv)))
           cost -= guess.gain(static_cast<Eigen::Index>(cv), column);
-      if (cost == 0.0 && sketch.plant.G.is_integrating()) {  // no range has a limit to drive it to
+      if (cost == 0.0 && sketch.plant.G.is_integrating()) {  // no range has a limit to which to drive the MV
         mv.set("resting_value", 0.0);
         mv.set("resting_weight", weight);
       } else {
@@ -224,8 +224,8 @@ void write_controller(TomlDraft& document, const StudySketch& sketch, const Gues
   write_cvs(controller, sketch, guess);
 }
 
-/// One CV after the other: setpoints go up, down and back, ranges get narrower by a quarter from above, and
-/// come back.
+/// Writes moves of one CV after the other. A setpoint goes up and down in turn; a range is narrowed by a
+/// quarter from above, and widened again.
 void write_moves(TomlDraft& simulation, const StudySketch& sketch, const Guess& guess) {
   constexpr int kMoves = 8;
   std::size_t steps = 0, limit_steps = 0;
@@ -267,7 +267,7 @@ void write_simulation(TomlDraft& document, const StudySketch& sketch, const Gues
   write_moves(simulation, sketch, guess);
   if (plant.mds.empty())
     return;
-  // What an MD does to a CV is half of the size of the CV at most.
+  // The effect of an MD on a CV is at most half of the size of the CV.
   const double effect =
       guess.gain.rightCols(static_cast<Eigen::Index>(plant.mds.size())).cwiseAbs().maxCoeff();
   const double level = rounded(effect > 0 ? 0.5 / effect : 1.0);
@@ -277,7 +277,7 @@ void write_simulation(TomlDraft& document, const StudySketch& sketch, const Gues
   steps.set("level", Distribution::uniform(-level, level));
 }
 
-/// Faults of every effect, whatever the plant: sizes are found by pilot loops.
+/// Writes faults with all sizes of effect for any plant: pilot loops find the sizes of the faults.
 void write_faults(TomlDraft& document, const Guess& guess) {
   TomlDraft& experiments = below(document, "experiments", "experiments");
   for (const char* kind : {"mpm", "ud", "healthy"})
@@ -298,7 +298,7 @@ void write_faults(TomlDraft& document, const Guess& guess) {
 
 void write_analysis(TomlDraft& document, const StudySketch& sketch, const Guess& guess) {
   TomlDraft& sensitivity = below(document, "sensitivity", "sensitivity");
-  std::vector<std::string> levels;  // where there is nothing else, nothing comes to rest at a limit
+  std::vector<std::string> levels;  // with levels alone, no CV comes to rest at a limit
   for (std::size_t cv = 0; cv < sketch.ranges.size(); ++cv)
     if (sketch.ranges[cv] && sketch.plant.G.is_integrating(static_cast<Eigen::Index>(cv)))
       levels.push_back(sketch.plant.cvs[cv].name);
@@ -311,7 +311,7 @@ void write_analysis(TomlDraft& document, const StudySketch& sketch, const Guess&
   below(document, "methods", "methods").set("names", std::vector<std::string>{"botelho", "mpmbench"});
 }
 
-/// Calls each cost the guess that it is.
+/// Adds a note to each cost that it is a guess.
 std::string with_cost_notes(std::string text) {
   constexpr std::string_view kCost = "\ncost = ";
   for (std::size_t at = text.find(kCost); at != std::string::npos; at = text.find(kCost, at)) {

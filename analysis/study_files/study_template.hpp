@@ -10,15 +10,15 @@
 
 namespace mpm {
 
-/// What is known of a plant and its controller before a study of it exists.
+/// The known facts about a plant and its controller, from which study_template() makes a study.
 ///
 /// | symbol      | meaning                                                        | shape | unit |
 /// |-------------|----------------------------------------------------------------|-------|------|
-/// | plant       | its model; no channel integrates, one from an MV is not zero   |       |      |
-/// | sample_time | of the controller; none: chosen                                |       | time |
-/// | ranges      | soft limits; a CV without them is held at a setpoint           | ny    | CV   |
-/// | size        | by how much the setpoint of a CV without a range moves         | ny    | CV   |
-/// | noise       | of the CVs, standard deviation; empty or 0: a part of the size | ny    | CV   |
+/// | plant       | its model; at least one channel from an MV is not zero         |       |      |
+/// | sample_time | of the controller (default: chosen)                            |       | time |
+/// | ranges      | soft limits; a CV without them has a setpoint                  | ny    | CV   |
+/// | size        | size of the setpoint steps of a CV without a range             | ny    | CV   |
+/// | noise       | standard deviation; if empty or 0, a fraction of the size      | ny    | CV   |
 /// | mv_hard     | hard limits, infinite where there are none                     | nu    | MV   |
 struct StudySketch {
   PlantModel plant;
@@ -29,13 +29,14 @@ struct StudySketch {
   Limits mv_hard;
 };
 
-/// A study of this plant as the text of a study file, with a comment above each key. What
+/// Returns a study of this plant as the text of a study file, with a comment above each key. Everything that
 /// the sketch leaves open follows from the time constants, dead times and gains of the model and the sizes of
-/// its CVs: horizons from the settling time, weights from what a move does to the CVs in parts of their
-/// sizes, the excitation, and faults by their effect on the loop. They are a beginning, and the text says so.
+/// its CVs: the horizons from the settling time, the weights from the effect of a move on the CVs relative to
+/// their sizes, the excitation, and the faults from their effect on the loop. These values are a starting
+/// point, and the text says so.
 ///
-/// Errors: InputError for a plant that makes none (PlantModel::validate(), an integrating channel, no channel
-/// from an MV), ranges that are not finite or empty, sizes and a sample time that are not positive.
+/// Errors: InputError for a plant of which no study can be made (PlantModel::validate(), no channel from an
+/// MV), for ranges that are empty or not finite, and for sizes or a sample time that are not positive.
 std::string study_template(const StudySketch& sketch);
 
 }  // namespace mpm

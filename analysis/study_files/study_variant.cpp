@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-/// Takes out the value under a dotted key; false when there is none.
+/// Removes the value under a dotted key; returns false if there is none.
 bool take_out(toml::table& table, const std::string& dotted_key) {
   const std::size_t dot = dotted_key.rfind('.');
   if (dot == std::string::npos)

@@ -36,7 +36,7 @@ std::vector<std::string> names_of(const std::vector<SuiteAxis>& axis) {
   return names;
 }
 
-/// A plant of the file: its text, as the families change it.
+/// A plant of the file with its text, before the changes of the families.
 struct BasePlant {
   SuiteAxis axis;
   toml::table text;
@@ -50,7 +50,7 @@ BasePlant read_base_plant(const TomlTable& plant, const fs::path& folder, const 
   return base;
 }
 
-/// The changes of a family, and of which plants.
+/// The changes of a family, and the plants that it has.
 struct FamilyChanges {
   SuiteAxis axis;
   TomlTable changes;
@@ -69,7 +69,7 @@ FamilyChanges read_family(const TomlTable& family, const std::vector<std::string
           plants};
 }
 
-/// Refuses a name that the list has twice: archives would overwrite each other.
+/// Refuses a name that occurs twice in the list: archives would overwrite each other.
 void require_distinct(const std::vector<SuiteAxis>& axis, const TomlTable& document, const char* key) {
   const std::vector<std::string> names = names_of(axis);
   for (auto name = names.begin(); name != names.end(); ++name)
@@ -101,10 +101,11 @@ CellChanges read_cell_changes(const TomlTable& document, const std::vector<std::
   return changes;
 }
 
-/// Plants and families may be added behind the others without a change to the seeds of these.
+/// Returns the seed of a cell. Plants and families may be appended without a change to the seeds of the
+/// others.
 std::uint64_t cell_seed(std::uint64_t suite_seed, std::size_t plant, std::size_t family) {
   constexpr std::uint64_t kMostFamilies = 1U << 16U;
-  constexpr int kSpareBits = 11;  // of 64, so that a double has it
+  constexpr int kSpareBits = 11;  // of 64, so that a double can hold the seed
   return RandomStream(suite_seed, plant * kMostFamilies + family, StreamId::suite_cell).bits() >> kSpareBits;
 }
 
@@ -119,7 +120,7 @@ void name_cell(toml::table& text, const Suite& suite, const SuiteCell& cell) {
   text.insert_or_assign("study", std::move(heading));
 }
 
-/// Is it one of those that are asked for? Empty: all are.
+/// Returns whether the name is among the chosen ones; an empty list means all.
 bool is_chosen(const std::string& name, const std::vector<std::string>& chosen) {
   return chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
 }

@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kLastChapter = 7;
 
-/// The study of a variant: that of the table with changes, or another one, with changes or without.
+/// Reads the study of a variant: the study of the table with changes, or another study with or without
+/// changes.
 Study read_variant(const TomlTable& variant, const toml::table& base, const fs::path& path,
                    const std::string& name) {
   const std::string place = fmt::format("{} ({})", path.string(), name);
@@ -55,7 +56,7 @@ std::map<std::string, Study> read_studies(const TomlTable& document, const TomlT
   return studies;
 }
 
-/// Table 3.10 comes after table 3.4, and the figures of a chapter after its tables.
+/// Returns the sort key: table 3.10 comes after table 3.4, and the figures of a chapter after its tables.
 std::tuple<int, bool, int> place_of(const ThesisTable& table) {
   return {table.chapter, table.figure, std::stoi(table.number.substr(table.number.find('.') + 1))};
 }

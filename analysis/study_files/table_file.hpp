@@ -9,15 +9,15 @@
 namespace mpm {
 
 /// Reads a table file (docs/reproduction.md) whose cells may have `quantities`. Errors: InputError
-/// "FILE:LINE: KEY: ...", also for a cell whose CV, scenario, variant or quantity there is not.
+/// "FILE:LINE: KEY: ...", also for a cell with an unknown CV, scenario, variant or quantity.
 ThesisTable load_table(const std::filesystem::path& path, const std::vector<TableQuantity>& quantities);
 
-/// Where the shipped tables are: the folder `tables` beside study_directory().
+/// Returns the folder of the shipped tables: `tables` beside study_directory().
 std::filesystem::path table_directory();
 
-/// The tables in `directory`, in the order of their numbers, that match `which`: "all", "chapter4", or a
-/// name. Errors: as load_table(); InputError when the folder cannot be read, when two files have one
-/// number, and, with the known ones, when none matches.
+/// Returns the tables in `directory` that match `which` ("all", "chapter4", or a name), in the order of their
+/// numbers. Errors: as load_table(); InputError if the folder cannot be read or two files have the same
+/// number, and, listing the known names, if no table matches.
 std::vector<ThesisTable> find_tables(const std::string& which, const std::vector<TableQuantity>& quantities,
                                      const std::filesystem::path& directory = table_directory());
 

@@ -8,15 +8,15 @@
 #include "analysis/study_files/thesis_table.hpp"
 #include "scenarios/toml/toml_table.hpp"
 
-// The parts of the reader of table files, one source file each. All refuse what they cannot take as TomlTable
+// The parts of the reader of table files, each in its own source file. All refuse wrong values as TomlTable
 // does.
 
 namespace mpm {
 
-/// The name under which a row refers to the study without a variant, where it names a benchmark.
+/// The name by which a row refers to the study without changes when it names a benchmark.
 inline constexpr std::string_view kStudyItself = "study";
 
-/// What a column says about all its cells; empty: the row says it.
+/// The values that a column gives to all its cells. If a value is empty, the row gives it.
 struct TableColumn {
   std::string head, cv, mv, quantity;
 };
@@ -25,14 +25,14 @@ struct TableColumn {
 std::vector<VerdictRule> read_table_rules(const TomlTable& document,
                                           const std::vector<TableQuantity>& quantities);
 
-/// [[column]] (table_file_rows.cpp), as the next one.
+/// [[column]] (table_file_rows.cpp)
 std::vector<TableColumn> read_table_columns(const TomlTable& document, const Study& study);
 
-/// [[row]]; `table` has the studies and the rules.
+/// [[row]] (table_file_rows.cpp); `table` has the studies and the rules.
 std::vector<TableRow> read_table_rows(const TomlTable& document, const std::vector<TableColumn>& columns,
                                       const ThesisTable& table, const std::vector<TableQuantity>& quantities);
 
-/// The names of the quantities, in their order.
+/// Returns the names of the quantities in their order.
 std::vector<std::string> quantity_names(const std::vector<TableQuantity>& quantities);
 
 }  // namespace mpm

@@ -20,7 +20,7 @@ std::vector<std::string> scenario_names(const Study& study) {
   return names;
 }
 
-/// The verdicts of a row, in words; "" stands for a cell of which the thesis says nothing.
+/// Reads the verdicts of a row, in words; "" stands for a cell about which the thesis says nothing.
 std::vector<std::optional<std::string>> read_verdicts(const TomlTable& table, std::size_t count) {
   const toml::node& node = table.require("verdicts", fmt::format("a list of {} texts", count));
   const toml::array* const list = node.as_array();
@@ -36,7 +36,7 @@ std::vector<std::optional<std::string>> read_verdicts(const TomlTable& table, st
   return verdicts;
 }
 
-/// The numbers of a row; "" stands for a cell that the thesis leaves empty.
+/// Reads the numbers of a row; "" stands for a cell that the thesis leaves empty.
 std::vector<std::optional<double>> read_values(const TomlTable& table, std::size_t count) {
   const toml::node& node = table.require("values", fmt::format("a list of {} numbers", count));
   const toml::array* const list = node.as_array();
@@ -53,7 +53,8 @@ std::vector<std::optional<double>> read_values(const TomlTable& table, std::size
   return values;
 }
 
-/// The quantity of a cell: that of its row, with '*' replaced by that of its column, or the only one given.
+/// Returns the quantity of a cell: that of its row with '*' replaced by that of its column; without a '*',
+/// that of its column, or else that of its row.
 std::string joined_quantity(const std::string& of_row, const std::string& of_column) {
   const std::size_t star = of_row.find('*');
   if (star != std::string::npos)
@@ -61,7 +62,7 @@ std::string joined_quantity(const std::string& of_row, const std::string& of_col
   return of_column.empty() ? of_row : of_column;
 }
 
-/// The one of `known` that the column names, or else the row under `key`.
+/// Returns the name that the column gives, or else the row under `key`. It must be one of `known`.
 std::string read_cell_name(const TomlTable& table, const char* key, const std::string& of_column,
                            const TableColumn& column, const std::vector<std::string>& known) {
   std::string name = of_column.empty() ? read_text_or(table, key, "") : of_column;
@@ -75,7 +76,7 @@ std::string read_cell_name(const TomlTable& table, const char* key, const std::s
   return name;
 }
 
-/// Which cell it is that all its row and column say.
+/// Reads from the row and the column which quantity, CV and MV a cell has.
 TableCell read_cell(const TomlTable& table, const TableColumn& column, const Study& study,
                     const std::vector<TableQuantity>& quantities) {
   TableCell cell;
@@ -91,7 +92,8 @@ TableCell read_cell(const TomlTable& table, const TableColumn& column, const Stu
   return cell;
 }
 
-/// The variant under `key`, one of those that the file defines; empty: the study as it is.
+/// Reads the variant under `key`, which must be one that the file defines. Without the key, returns "": the
+/// study as it is.
 std::string read_variant_name(const TomlTable& table, std::string_view key,
                               const std::map<std::string, Study>& studies) {
   if (!table.has(key))
@@ -148,7 +150,7 @@ TableRow read_row(const TomlTable& table, const std::vector<TableColumn>& column
   return row;
 }
 
-/// A verdict in words that no rule can come to would never agree.
+/// Refuses a verdict in words that no rule can give, because it would never agree.
 void refuse_unknown_verdicts(const TomlTable& table, const TableRow& row, const ThesisTable& of) {
   for (const TableCell& cell : row.cells) {
     if (!cell.verdict)

@@ -9,7 +9,7 @@
 namespace mpm {
 namespace {
 
-/// Keys that mean something for this kind of rule; others would be read over in silence.
+/// Refuses keys that have no meaning for this kind of rule, which would otherwise be ignored silently.
 void refuse_idle_keys(const TomlTable& table, RuleKind kind) {
   const bool banded = kind == RuleKind::outside || kind == RuleKind::any_within;
   for (const char* key : {"threshold", "band", "yes", "no"}) {

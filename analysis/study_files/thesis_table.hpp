@@ -9,21 +9,21 @@
 
 namespace mpm {
 
-/// How a number of a table becomes a verdict.
+/// The way in which a number of a table becomes a verdict.
 enum class RuleKind {
-  outside,     ///< outside the band
-  any_above,   ///< some number of the row, of those that the rule is for, is above the threshold
-  any_within,  ///< some number of the row, of those that the rule is for, lies within the band
-  rank,        ///< its place among the rows, from the smallest number of the column on
+  outside,     ///< the number is outside the band
+  any_above,   ///< at least one number of the row to which the rule applies is above the threshold
+  any_within,  ///< at least one number of the row to which the rule applies lies within the band
+  rank,        ///< its rank among the rows, with the smallest number of the column first
 };
 
-/// What is concluded from the quantities of a table, and how it is called.
+/// A rule for verdicts on quantities of a table, and the names of the verdicts.
 struct VerdictRule {
   std::vector<std::string> quantities;
   RuleKind kind = RuleKind::outside;
   double lower = 0.0, upper = 0.0;  ///< the band; of any_above the threshold is `lower`
   std::string yes, no;              ///< the two verdicts, such as "flagged" and "not flagged"
-  std::string source;               ///< where the thesis says so
+  std::string source;               ///< the place in the thesis
 };
 
 /// The object to which a quantity belongs.
@@ -40,17 +40,17 @@ struct TableCell {
   std::string cv;  ///< empty for a quantity of the loop
   std::string quantity;
   std::optional<double> thesis = {};        ///< its number, or
-  std::optional<std::string> verdict = {};  ///< its verdict in words; both none: an empty cell
-  std::string mv = {};                      ///< of a quantity of a channel
+  std::optional<std::string> verdict = {};  ///< its verdict in words; an empty cell has neither
+  std::string mv = {};                      ///< for a quantity of a channel
 };
 
 /// One row: the loop of one scenario under one variant of the study.
 struct TableRow {
   std::string label;
-  std::string variant;   ///< empty: the study as it is
-  std::string scenario;  ///< the scenario of the study; empty: the basis case
+  std::string variant;   ///< if empty, the study as it is
+  std::string scenario;  ///< the scenario of the study; if empty, the basis case
   std::vector<TableCell> cells;
-  /// The variant whose basis case is the benchmark of methods that need one; none: `variant`.
+  /// The variant whose basis case is the benchmark of methods that need one (default: `variant`).
   std::optional<std::string> benchmark = {};
 };
 
@@ -60,18 +60,18 @@ struct ThesisTable {
   bool figure = false;  ///< figures and tables have numbers of their own
   int chapter = 0;
   std::string title;
-  std::string note;                      ///< choices for numbers that the thesis does not give; may be empty
+  std::string note;  ///< choices made for numbers that the thesis does not give; may be empty
   std::map<std::string, Study> studies;  ///< by the name of the variant; "" is the study as it is
   std::vector<std::string> heads;        ///< of the columns
   std::vector<TableRow> rows;
   std::vector<VerdictRule> rules;
 
-  /// "Table 4.5", "Figure 2.8"
+  /// Returns "Table 4.5" or "Figure 2.8", for example.
   std::string label() const;
-  /// How it is called on the command line: "4.5", "figure2.8".
+  /// Returns the name for the command line: "4.5" or "figure2.8", for example.
   std::string name() const;
 
-  /// The rule for a quantity; none when its numbers are only compared.
+  /// Returns the rule for a quantity; null if its numbers are only compared.
   const VerdictRule* rule_for(const std::string& quantity) const;
 };
 

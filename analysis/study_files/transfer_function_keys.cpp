@@ -20,9 +20,9 @@ namespace {
 constexpr std::size_t kMaxCoefficients = 20;
 constexpr std::size_t kMaxStepCoefficients = 1000;
 
-/// Largest real part of the roots of p_0 s^n + ... + p_n, n >= 1, p_0 != 0, by the companion matrix. The unit
-/// of s is chosen so that the geometric mean of the roots is 1; without that, slow multiple roots would drown
-/// in rounding. Not finite when the ratios of the coefficients are not.
+/// Returns the largest real part of the roots of p_0 s^n + ... + p_n, n >= 1, p_0 != 0, by the companion
+/// matrix. The unit of s is chosen so that the geometric mean of the roots is 1; otherwise slow multiple
+/// roots would drown in rounding. Not finite if the ratios of the coefficients are not.
 double largest_real_part_of_roots(const Eigen::VectorXd& p) {
   const Eigen::Index n = p.size() - 1;
   const double mean_root = std::pow(std::abs(p(n) / p(0)), 1.0 / static_cast<double>(n));
