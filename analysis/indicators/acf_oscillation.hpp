@@ -46,8 +46,9 @@ struct AcfOscillation {
 /// ripples do not count. The sample function of a signal without oscillation swings too. `present` therefore
 /// needs, besides R >= threshold,
 ///
-/// - an a above Bartlett's half band at the lag of the maximum, and - three half periods (0 to minimum, to
-/// maximum, to second minimum), none of which is more than twice as long as another.
+/// - an a above Bartlett's half band at the lag of the maximum, and
+/// - three half periods (0 to minimum, to maximum, to second minimum), none of which is more than twice as
+///   long as another.
 ///
 /// If the second minimum of an oscillation lies beyond the last lag, the verdict is `absent`: the lags must
 /// cover a little more than one and a half periods.

@@ -15,11 +15,12 @@ namespace {
 
 constexpr Eigen::Index kShortestRecord = 600;
 
-/// A CV has begun to move when it has gone this share of its largest deviation: above rounding, and above the
-/// creep that nobody would model.
+/// A CV has begun to move when its deviation exceeds this share of the largest one. The share is above
+/// rounding and above a creep that nobody would model.
 constexpr double kBegun = 1e-3;
 
-/// Samples from the first move of the reference to the first answer of the output, 1 at least.
+/// Returns the number of samples from the first move of the reference to the first answer of the output, at
+/// least 1.
 Eigen::Index begin_of_answer(const Eigen::RowVectorXd& moves, const Eigen::RowVectorXd& y) {
   Eigen::Index moved = 0, answered = 0;
   while (moved + 1 < moves.size() && moves(moved) == 0.0)

@@ -20,7 +20,7 @@ Eigen::MatrixXd optimizer_steady_state(const Study& study, const Trajectory& loo
 std::vector<ControlStructure> control_structures(const Study& study, const Trajectory& loop,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& y_sim) {
   const MpcOptions& options = study.controller;
-  // What decides whether a CV in a range is active.
+  // The outputs and inputs that decide which CVs are active and which MVs are fixed.
   const Eigen::MatrixXd y = options.has_targets() ? optimizer_steady_state(study, loop, y_sim) : loop.y;
   const Eigen::MatrixXd& u = options.has_targets() ? loop.u_target : loop.u;
   std::vector<ControlStructure> structures(static_cast<std::size_t>(y.cols()));

@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// The constraints at which a controller works. It is linear as long as they stay the same, and has an S0 for
-/// each set (3.3.3, 6.3).
+/// The constraints at which a controller works. The controller is linear as long as they stay the same, so
+/// that each set of constraints has an S0 (3.3.3, 6.3).
 struct ControlStructure {
   std::vector<ActiveConstraint> active;  ///< CVs at a setpoint or a soft limit, in their order
   std::vector<Eigen::Index> fixed_mvs;   ///< MVs at a hard limit, in their order
@@ -19,17 +19,18 @@ struct ControlStructure {
   auto operator<=>(const ControlStructure&) const = default;
 };
 
-/// The steady state of the CVs at which the target optimizer aims (2.32, 6.19), ny x N:
+/// Returns the steady state of the CVs at which the target optimizer aims (2.32, 6.19), ny x N:
 ///
 ///     K u_target(k) + K_d d(k) + y(k) - y_sim(k)
 ///
-/// with the static gains K of the MVs and K_d of the MDs, and the output bias of the controller.
+/// with the static gains K of the MVs and K_d of the MDs, and the output bias y(k) - y_sim(k) of the
+/// controller. For a CV that integrates it is y(k).
 Eigen::MatrixXd optimizer_steady_state(const Study& study, const Trajectory& loop,
                                        const Eigen::Ref<const Eigen::MatrixXd>& y_sim);
 
-/// The structure at each sample of a loop, from its data alone. A CV with a setpoint is always active; a CV
-/// in a range is active where a deciding output is at or over a limit, and an MV is fixed where a deciding
-/// input is at a limit:
+/// Determines the structure at each sample of a loop from its data alone. A CV with a setpoint is always
+/// active. A CV in a range is active when its deciding output is at or beyond a limit, and an MV is fixed
+/// when its deciding input is at a limit. While they are off, a CV is not active and an MV is fixed.
 ///
 /// | controller      | deciding inputs | deciding outputs                                  |
 /// |-----------------|-----------------|---------------------------------------------------|

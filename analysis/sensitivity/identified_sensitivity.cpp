@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-/// The row of a CV that does not move.
+/// Returns the row of a CV that does not move.
 IdentifiedRow row_at_rest(Eigen::Index n_ref, Eigen::Index N) {
   IdentifiedRow row;
   row.validation_fit = kNaN;
@@ -36,8 +36,7 @@ IdentifiedRow identified_row(const Eigen::VectorXd& y, const Eigen::Ref<const Ei
   const OrderCandidate& best = selection.candidates[*selection.best];
   row.validation_fit = best.validation_fit;
   row.identification = identify(y, r, best.order, options.fit);
-  // The whole record may have a start that the search gets lost from; the model of its first part stands
-  // then.
+  // On the whole record the search may fail. The model of its first part is then the result.
   if (!is_usable(row.identification.status))
     row.identification = best.identification;
   return row;

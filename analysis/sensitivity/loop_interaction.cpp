@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-/// MVs that are not held at a limit.
+/// Returns the MVs that are not held at a limit.
 std::vector<Eigen::Index> available_mvs(const Study& study, const OperatingPoint& point) {
   std::vector<Eigen::Index> mvs;
   for (Eigen::Index j = 0; j < study.mv_count(); ++j)
@@ -34,7 +34,7 @@ Eigen::MatrixXd relative_gain_magnitudes(const TransferMatrix& G, const LoopInte
   return relative_gains(response(of.cvs, of.mvs)).cwiseAbs();
 }
 
-/// Entries above their neighbours, the first of equal ones; there is one at least.
+/// Returns the entries above their neighbours; of equal ones, the first. There is at least one.
 std::vector<Eigen::Index> local_maxima(const Eigen::VectorXd& values) {
   std::vector<Eigen::Index> found;
   for (Eigen::Index i = 0; i < values.size(); ++i) {
@@ -46,23 +46,23 @@ std::vector<Eigen::Index> local_maxima(const Eigen::VectorXd& values) {
   return found;
 }
 
-/// The w at which `weight` is largest, near entry `at` of the grid.
+/// Returns the w near entry `at` of the grid at which `weight` is largest.
 double refined_maximum(const Eigen::VectorXd& grid, Eigen::Index at, const auto& weight) {
   const double lower = std::log(grid(std::max<Eigen::Index>(at - 1, 0)));
   const double upper = std::log(grid(std::min(at + 1, grid.size() - 1)));
-  constexpr int kBits = 20;  // of log w: six digits, and a maximum is flat
+  constexpr int kBits = 20;  // of log w: six digits are enough, as a maximum is flat
   const auto negative = [&](double log_frequency) { return -weight(std::exp(log_frequency)); };
   const double refined = std::exp(boost::math::tools::brent_find_minima(negative, lower, upper, kBits).first);
   return weight(refined) > weight(grid(at)) ? refined : grid(at);
 }
 
-/// Whether sums and products of the numbers of T0 are sure to be finite. An archive may have others, and what
-/// it holds beside them is still to be reported.
+/// Returns whether the numbers of T0 are so small that their sums and products are finite. An archive may
+/// hold other numbers, and its remaining content must still be reported.
 bool has_weight(const NominalSensitivity& sensitivity) {
   const double largest = 1e100;
   return std::all_of(sensitivity.step_response.begin(), sensitivity.step_response.end(),
                      [largest](const Eigen::MatrixXd& response) {
-                       return (response.array().abs() < largest).all();  // not so of NaN
+                       return (response.array().abs() < largest).all();  // false for NaN
                      });
 }
 

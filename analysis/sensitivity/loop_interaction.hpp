@@ -10,11 +10,11 @@
 
 namespace mpm {
 
-/// T0 at one frequency, from its step responses s_1 ... s_L (s_0 = 0):
+/// Returns T0 at one frequency, from its step responses s_1 ... s_L (s_0 = 0):
 ///
 ///   T0(e^{jw Ts})(:, j) = sum_{l=1}^{L} (s_l - s_{l-1}) e^{-jw Ts l}
 ///
-/// which is exact for responses that have settled, up to the Nyquist frequency pi/Ts; beyond, it repeats.
+/// This is exact for responses that have settled, up to the Nyquist frequency pi/Ts; beyond that it repeats.
 ///
 /// | symbol | name          | meaning                                      | shape     | unit              |
 /// |--------|---------------|----------------------------------------------|-----------|-------------------|
@@ -22,18 +22,18 @@ namespace mpm {
 /// | w      | `frequency`   |                                              | 1         | rad per time unit |
 /// | Ts     | `sample_time` |                                              | 1         | time unit         |
 ///
-/// CVs inside their range have no column in T0 (they act on nothing) and no row here.
+/// A CV inside its range has no column in T0 because it has no effect, and it has no row here.
 /// @throws InputError unless frequency >= 0 and sample_time > 0
 Eigen::MatrixXcd active_frequency_response(const NominalSensitivity& sensitivity, double frequency,
                                            double sample_time);
 
-/// How strongly the loops of a study interact, and at which frequencies its controller works (section 4.3.1,
+/// The interaction of the loops of a study and the frequencies at which its controller works (section 4.3.1,
 /// figures 4.5, 4.6, 4.11, 4.12).
 ///
 /// | symbol   | member            | shape | unit                                                        |
 /// |----------|-------------------|-------|-------------------------------------------------------------|
 /// |          | cvs               | m     | CVs at a setpoint or an active limit: those of T0           |
-/// |          | mvs               | m     | MVs that the controller can move; empty when not just m     |
+/// |          | mvs               | m     | MVs that the controller can move; empty if not exactly m    |
 /// | w        | frequency         | F     | rad per time unit of the plant, up to the Nyquist frequency |
 /// | RPN      | rpn               | F     | weight function (4.16) at w                                 |
 /// | |Lambda| | relative_gain     | F     | m x m: magnitudes of the dynamic RGA of G0 at w, see mvs    |
@@ -42,13 +42,13 @@ Eigen::MatrixXcd active_frequency_response(const NominalSensitivity& sensitivity
 /// |          | rpn_maximum       | 1     | RPN there                                                   |
 /// |          | relative_gain_at_maximum | m x m | |Lambda| there                                       |
 ///
-/// In a direction in which the controller needs one sample only, T0 = e^{-jw Ts} and |S0 T0| rises to 2 at
-/// the Nyquist frequency, whatever the plant. The largest RPN then lies there, and a peak at a lower
-/// frequency belongs to a slower direction. The Nyquist frequency counts as a peak when the RPN rises towards
+/// In a direction in which the controller needs only one sample, T0 = e^{-jw Ts}, and |S0 T0| rises to 2 at
+/// the Nyquist frequency for any plant. The largest RPN then lies at this frequency, and a peak at a lower
+/// frequency belongs to a slower direction. The Nyquist frequency counts as a peak if the RPN rises towards
 /// it.
 ///
-/// `mvs` and the relative gains are empty when active CVs and MVs are not equally many, so that no square
-/// part of G0 is singled out, or when this part has no inverse, as with a CV that no MV moves. The diagonal
+/// `mvs` and the relative gains are empty if the numbers of active CVs and MVs differ, so that they select no
+/// square part of G0, or if this part has no inverse, for example because no MV moves a CV. The diagonal
 /// pairs CVs and MVs in the order of their lists.
 struct LoopInteraction {
   struct Peak {
@@ -67,12 +67,13 @@ struct LoopInteraction {
   Eigen::MatrixXd relative_gain_at_maximum;
 };
 
-/// The interaction at `count` frequencies, evenly spaced in their logarithms from a tenth of the lowest that
-/// the length of the step responses resolves, 2 pi/(L Ts), to the Nyquist frequency. The maximum of the RPN
-/// is refined between them.
+/// Computes the interaction at `count` frequencies with even logarithmic spacing. They go from a tenth of the
+/// lowest frequency that the length of the step responses resolves, 2 pi/(L Ts), to the Nyquist frequency.
+/// The maximum of the RPN is refined between them.
 ///
-/// G0 with its exact frequency response, the dead times as they are, and not as the controller samples it.
-/// A T0 with numbers that are not finite, or above 1e100, has no RPN: all but `cvs` is empty.
+/// G0 has its exact frequency response with its exact dead times, not that of the sampled model of the
+/// controller. A T0 with numbers that are not finite, or above 1e100, has no RPN: all members except `cvs`
+/// are empty.
 /// @throws InputError for fewer than 2 frequencies
 LoopInteraction loop_interaction(const Study& study, const OperatingPoint& point,
                                  const NominalSensitivity& sensitivity, Eigen::Index count = 200);

@@ -18,8 +18,8 @@
 namespace mpm {
 namespace {
 
-/// States and past inputs of a loop above which nobody waits for its eigenvalues: they cost ten times the
-/// cube of it.
+/// Largest number of past inputs in the state of a loop. Beyond it nobody would wait for the eigenvalues,
+/// which cost ten times the cube of the size.
 constexpr Eigen::Index kMostStates = 1000;
 
 using Indices = std::vector<Eigen::Index>;
@@ -28,13 +28,13 @@ Eigen::Index count_of(const Indices& indices) {
   return static_cast<Eigen::Index>(indices.size());
 }
 
-/// A channel from MV `mvs[col]` to CV `cvs[row]` of those that are in the loop.
+/// A channel from MV `mvs[col]` to CV `cvs[row]`, both of the loop.
 struct DelayedChannel {
   Eigen::Index row, col;
   DiscreteChannel model;
 };
 
-/// The channels of G in the loop that are not zero.
+/// Returns the channels of G that belong to the loop and are not zero.
 std::vector<DelayedChannel> channels_of(const TransferMatrix& G, double sample_time, const Indices& cvs,
                                         const Indices& mvs) {
   std::vector<DelayedChannel> channels;
@@ -48,7 +48,7 @@ std::vector<DelayedChannel> channels_of(const TransferMatrix& G, double sample_t
   return channels;
 }
 
-/// How many past inputs the channels look back at.
+/// Returns the number of past samples of the inputs on which the channels depend.
 Eigen::Index memory_of(const std::vector<DelayedChannel>& channels) {
   Eigen::Index memory = 1;
   for (const DelayedChannel& channel : channels)
@@ -56,7 +56,7 @@ Eigen::Index memory_of(const std::vector<DelayedChannel>& channels) {
   return memory;
 }
 
-/// Channels side by side, with the past inputs h = (u(k-1), u(k-2), ...) of nu numbers each:
+/// Channels side by side in one state space. Past inputs are h = (u(k-1), u(k-2), ...), with nu numbers each:
 ///
 ///     x(k+1) = A x(k) + B u(k) + B_past h(k),   y(k) = C x(k) + D_past h(k)
 struct Realisation {
@@ -88,14 +88,15 @@ struct Realisation {
   }
 };
 
-/// The past inputs a sample later, without the new one.
+/// Returns the matrix that moves the past inputs on by one sample, without the new input.
 Eigen::MatrixXd shift_of(Eigen::Index nu, Eigen::Index memory) {
   Eigen::MatrixXd shift = Eigen::MatrixXd::Zero(nu * memory, nu * memory);
   shift.bottomLeftCorner(nu * (memory - 1), nu * (memory - 1)).setIdentity();
   return shift;
 }
 
-/// y(k+1), ..., y(k+Hp) of the model from (x, h) at sample k with the MVs held at u(k-1); row a Hp + l - 1.
+/// Returns the matrix from (x, h) at sample k to y(k+1), ..., y(k+Hp) of the model with the MVs held at
+/// u(k-1). Output a at step l is in row a Hp + l - 1.
 Eigen::MatrixXd free_response_of(const Realisation& model, Eigen::Index nu, Eigen::Index memory,
                                  Eigen::Index horizon) {
   const Eigen::Index n = model.A.rows(), ny = model.C.rows();
@@ -114,7 +115,8 @@ Eigen::MatrixXd free_response_of(const Realisation& model, Eigen::Index nu, Eige
   return response;
 }
 
-/// The controller whose CVs at a limit have it as a setpoint of the weight that the slack has, or of none.
+/// Returns a controller without limits. For a CV at a limit, the limit becomes a setpoint, with the weight of
+/// the slack if `over_limits`, else with weight 0.
 MpcOptions linear_options(const Study& study, const OperatingPoint& point, bool over_limits) {
   MpcOptions options = study.controller;
   options.mv_hard = Limits::none(study.mv_count());
@@ -129,13 +131,13 @@ MpcOptions linear_options(const Study& study, const OperatingPoint& point, bool 
   return options;
 }
 
-/// The first moves of the free MVs, per unit of what the objective refers to.
+/// The first moves of the free MVs, per unit of the free response and of the target.
 struct FirstMoves {
-  Eigen::MatrixXd of_free;    ///< of the free response, nu x (m Hp); column a Hp + l - 1
-  Eigen::MatrixXd of_target;  ///< of u_target - u(k-1), nu x nu
+  Eigen::MatrixXd of_free;    ///< per unit of the free response, nu x (m Hp); column a Hp + l - 1
+  Eigen::MatrixXd of_target;  ///< per unit of u_target - u(k-1), nu x nu
 };
 
-/// The problem of the controller with these options; none where they do not determine its moves.
+/// Returns the problem of the controller with these options; none if they do not determine its moves.
 std::optional<MpcQp> linear_problem(const TransferMatrix& model, const MpcOptions& options) {
   try {
     return MpcQp(model, options.mv_cost.size(), options);
@@ -146,7 +148,7 @@ std::optional<MpcQp> linear_problem(const TransferMatrix& model, const MpcOption
 
 FirstMoves first_moves(const Study& study, MpcQp& qp, const Indices& cvs, const Indices& mvs) {
   const Eigen::Index all = study.mv_count(), nu = count_of(mvs), hp = study.controller.prediction_horizon;
-  Indices places;  // of the free MVs among the planned positions
+  Indices places;  // places of the free MVs in the planned positions
   for (Eigen::Index i = 0; i < study.controller.control_horizon; ++i)
     for (const Eigen::Index mv : mvs)
       places.push_back(i * all + mv);
@@ -175,8 +177,8 @@ FirstMoves first_moves(const Study& study, MpcQp& qp, const Indices& cvs, const 
   return result;
 }
 
-/// What the targets answer to the bias, -K_active^-1; 0 without targets. None where the active CVs do not
-/// determine them.
+/// Returns the matrix from the bias to the targets, -K_active^-1; 0 if there are no targets. None if the
+/// active CVs do not determine the targets.
 std::optional<Eigen::MatrixXd> target_of_bias(const TransferMatrix& model, const MpcOptions& options,
                                               const Indices& cvs, const Indices& mvs) {
   if (!options.has_targets())
@@ -196,7 +198,7 @@ double spectral_radius_of(const Eigen::MatrixXd& A) {
   return A.rows() == 0 ? 0.0 : A.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-/// Does the fault make the loop another one, whose law this is not?
+/// Returns whether the fault changes the loop, so that its law no longer holds.
 bool changes_loop(const OtherFault& fault) {
   const FaultEffect effect = info_of(fault.kind).effect;
   return effect == FaultEffect::valve || effect == FaultEffect::hold;
@@ -239,7 +241,8 @@ LoopStability::LoopStability(const Study& study, const OperatingPoint& point)
     return;
   const Realisation model(channels, count_of(cvs_), nu, memory);
   const Eigen::MatrixXd response = free_response_of(model, nu, memory, hp);
-  // Over the limits, and inside: without targets nothing would act there.
+  // One law over the limits and one inside. Without targets there is no law inside, because nothing would act
+  // there.
   for (const bool over_limits : {true, false}) {
     if (!over_limits && !(has_limits && study.controller.has_targets()))
       continue;
@@ -273,8 +276,9 @@ double LoopStability::spectral_radius(const ExperimentDraw& draw) const {
       with_world_mismatches(world_plant(study_, draw_world(study_, draw.world)), draw.mismatches));
 }
 
-/// State: that of the model, that of the channels of the plant which differ, the past inputs. A channel that
-/// is right has one state in both, since both have had the same inputs since they were at rest.
+/// The state consists of the state of the model, the state of those channels of the plant that differ from
+/// the model, and the past inputs. A channel without an error has the same state in plant and model, because
+/// both have had the same inputs since they were at rest.
 double LoopStability::radius_with(const Law& law, const TransferMatrix& plant) const {
   const Eigen::Index ny = count_of(cvs_), nu = count_of(mvs_);
   const auto differs = [&](const DelayedChannel& channel) {
@@ -309,7 +313,7 @@ double LoopStability::radius_with(const Law& law, const TransferMatrix& plant) c
   Eigen::MatrixXd bias(ny, n + past);
   bias << -simulated.C, own.C, own.D_past - simulated.D_past;
   Eigen::MatrixXd move = law.of_bias * bias;
-  const Eigen::Index known = law.of_state.cols() - nx;  // of the past inputs
+  const Eigen::Index known = law.of_state.cols() - nx;  // number of past inputs in the law
   move.leftCols(nx) += law.of_state.leftCols(nx);
   move.middleCols(n, known) += law.of_state.rightCols(known);
   return spectral_radius_of(A + B * move);

@@ -8,7 +8,7 @@
 namespace mpm {
 namespace {
 
-/// The columns of `of` at which `structures` has this structure, in `to`.
+/// Copies the columns of `of` at which `structures` has this structure to `to`.
 void copy_columns(const std::vector<ControlStructure>& structures, const ControlStructure& structure,
                   const Eigen::MatrixXd& of, Eigen::MatrixXd& to) {
   for (std::size_t k = 0; k < structures.size(); ++k)
@@ -54,7 +54,7 @@ NominalOutputs NominalEstimator::estimate(const Trajectory& loop, const Eigen::M
       copy_columns(structures, structure, all.y0, result.y0);
       copy_columns(structures, structure, all.y0_diag, result.y0_diag);
     } else {
-      Eigen::MatrixXd y_then = y_sim;  // an error only where the loop has this structure
+      Eigen::MatrixXd y_then = y_sim;  // no error unless the loop has this structure
       copy_columns(structures, structure, loop.y, y_then);
       const NominalOutputs part = nominal_outputs(sensitivity, y_then, y_sim);
       result.y0 += part.y0 - y_sim;

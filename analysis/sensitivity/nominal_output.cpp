@@ -13,7 +13,7 @@ namespace mpm {
 namespace {
 
 /// Adds to `output` the response of a system with step response `step` (values 1..L samples after the step,
-/// the last one held) to `input`: output(k) += sum_l (step(l) - step(l-1)) input(k-l), from rest.
+/// the last one held) to `input`, from rest: output(k) += sum_l (step(l) - step(l-1)) input(k-l).
 void add_response(const Eigen::Ref<const Eigen::RowVectorXd>& step,
                   const Eigen::Ref<const Eigen::RowVectorXd>& input, Eigen::Ref<Eigen::RowVectorXd> output) {
   double previous = 0.0;
@@ -63,8 +63,8 @@ NominalOutputs nominal_outputs(const NominalSensitivity& sensitivity,
     throw InputError("y and y_sim",
                      fmt::format("{} x {} and {} x {}", y.rows(), y.cols(), y_sim.rows(), y_sim.cols()),
                      fmt::format("{} rows and equal shapes", sensitivity.cv_count));
-  // y + S0 (y_sim - y) = y_sim + T0 (y - y_sim): only the columns of T0 of active CVs are not zero. Rows are
-  // made contiguous once, because the convolution runs along time.
+  // y + S0 (y_sim - y) = y_sim + T0 (y - y_sim): only the columns of T0 for active CVs are not zero. The rows
+  // are made contiguous once, because the convolution runs along time.
   const RowMajorMatrix error = y - y_sim;
   if (!sensitivity.is_known) {
     const Eigen::MatrixXd none = Eigen::MatrixXd::Constant(y.rows(), y.cols(), kNaN);

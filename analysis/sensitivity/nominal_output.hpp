@@ -18,23 +18,23 @@ struct NominalOutputs {
   Eigen::MatrixXd y_sim, y0, y0_diag;
 };
 
-/// Output of the nominal model under the recorded MVs `u` (nu x N) and MDs `d` (nd x N), from the steady
-/// state of `initial_u` (nu) and zero disturbances.
+/// Simulates the output of the nominal model under the recorded MVs `u` (nu x N) and MDs `d` (nd x N),
+/// starting in the steady state of `initial_u` (nu) and zero disturbances.
 Eigen::MatrixXd simulated_output(const TransferMatrix& model, double sample_time,
                                  const Eigen::Ref<const Eigen::VectorXd>& initial_u,
                                  const Eigen::Ref<const Eigen::MatrixXd>& u,
                                  const Eigen::Ref<const Eigen::MatrixXd>& d);
 
-/// y0_diag = y + S0_diag (y_sim - y) (6.6) of one CV whose diagonal element of T0 has the unit step response
-/// `step` (values 1 ... L samples after the step, the last one held), from the records y and y_sim (N samples
-/// each). Throws InputError when their lengths differ.
+/// Returns y0_diag = y + S0_diag (y_sim - y) (6.6) of one CV, from the records y and y_sim (N samples each).
+/// `step` is the unit step response of its diagonal element of T0 (values 1 ... L samples after the step, the
+/// last one held). Throws InputError if the lengths of the records differ.
 Eigen::RowVectorXd diagonal_nominal_output(const Eigen::Ref<const Eigen::RowVectorXd>& step,
                                            const Eigen::Ref<const Eigen::RowVectorXd>& y,
                                            const Eigen::Ref<const Eigen::RowVectorXd>& y_sim);
 
-/// y0 and y0_diag of the record y (ny x N) with the model output y_sim (ny x N). A CV inside its range has
-/// S0_diag = 1, hence y0_diag = y_sim (6.17). NaN without a sensitivity that is known. Throws InputError when
-/// the shapes differ.
+/// Returns y0 and y0_diag of the record y (ny x N) with the model output y_sim (ny x N). A CV inside its
+/// range has S0_diag = 1, hence y0_diag = y_sim (6.17). Both are NaN if the sensitivity is not known. Throws
+/// InputError if the shapes differ.
 NominalOutputs nominal_outputs(const NominalSensitivity& sensitivity,
                                const Eigen::Ref<const Eigen::MatrixXd>& y,
                                const Eigen::Ref<const Eigen::MatrixXd>& y_sim);

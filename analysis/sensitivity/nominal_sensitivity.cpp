@@ -29,7 +29,7 @@ bool contains(const std::vector<Eigen::Index>& list, Eigen::Index i) {
   return std::find(list.begin(), list.end(), i) != list.end();
 }
 
-/// The setpoints, and of the CVs in ranges those of `cvs` at the limit they are nearest to; in the order of
+/// Returns the setpoints and, for those CVs in ranges that are in `cvs`, the nearest limit, in the order of
 /// the CVs.
 std::vector<ActiveConstraint> references(const Study& study, const std::vector<Eigen::Index>& cvs,
                                          const Eigen::VectorXd& y) {
@@ -51,12 +51,13 @@ std::vector<Eigen::Index> cvs_at_limit(const Study& study, const Eigen::VectorXd
   return cvs;
 }
 
-/// Whether targets draw the CV after a limit that leaves it: of one that integrates they hold the rate only.
+/// Returns whether the targets make the CV follow a limit that moves away from it. For a CV that integrates,
+/// they hold only its rate.
 bool is_drawn_to_limit(const Study& study, Eigen::Index cv) {
   return study.controller.has_targets() && !study.plant.G.is_integrating(cv);
 }
 
-/// Where the reference lies while T0 is determined.
+/// Returns the value of the reference at rest while T0 is determined.
 double reference_value(const Study& study, const OperatingPoint& point, const ActiveConstraint& reference) {
   if (reference.kind == ConstraintKind::setpoint || !is_drawn_to_limit(study, reference.cv))
     return point.y(reference.cv);
@@ -64,12 +65,12 @@ double reference_value(const Study& study, const OperatingPoint& point, const Ac
   return (reference.kind == ConstraintKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
 }
 
-/// The limit of `soft` that the reference is.
+/// Returns the limit in `soft` that is the reference.
 double& limit_of(Limits& soft, const ActiveConstraint& reference) {
   return (reference.kind == ConstraintKind::upper_limit ? soft.upper : soft.lower)(reference.cv);
 }
 
-/// The controller of A3 b and d: only the setpoints and the active limits are left.
+/// Returns the controller of A3 b and d, in which only the setpoints and the active limits are left.
 MpcOptions relaxed_options(const Study& study, const OperatingPoint& point) {
   MpcOptions options = study.controller;
   options.mv_hard = Limits::none(study.mv_count());
@@ -92,7 +93,7 @@ Eigen::VectorXd setpoints_at_rest(const Study& study, const OperatingPoint& poin
   return y_set;
 }
 
-/// Response of the outputs per unit of a step of the reference, `step` in CV units.
+/// Returns the response of the outputs per unit of a step of the reference; `step` is in CV units.
 Eigen::MatrixXd reference_response(const Study& study, const OperatingPoint& point,
                                    const ActiveConstraint& reference, double step,
                                    const QpSolverFactory& factory, const StepObserver& observer) {

@@ -23,8 +23,8 @@ void require_square(const char* name, const Eigen::Ref<const Eigen::MatrixXcd>& 
 
 Eigen::MatrixXcd relative_gains(const Eigen::Ref<const Eigen::MatrixXcd>& G) {
   require_square("G of relative gains", G);
-  // Rank by pivots needs rows and columns of like size, and units would decide it otherwise. Relative gains
-  // do not depend on them.
+  // The rank is found from pivots, which needs rows and columns of similar size; otherwise the units would
+  // decide it. Relative gains do not depend on this scaling.
   const Eigen::VectorXd row = G.cwiseAbs().rowwise().maxCoeff();
   const Eigen::MatrixXcd by_row = row.cwiseInverse().asDiagonal() * G;
   const Eigen::VectorXd col = by_row.cwiseAbs().colwise().maxCoeff().transpose();

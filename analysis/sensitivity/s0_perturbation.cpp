@@ -14,7 +14,7 @@ bool is_looked_at(const Study& study, Eigen::Index cv) {
   return cvs.empty() || std::find(cvs.begin(), cvs.end(), cv) != cvs.end();
 }
 
-/// Ivar_diag with each of the models.
+/// Returns Ivar_diag with each of the models.
 Eigen::VectorXd variance_indices(const std::vector<Eigen::RowVectorXd>& models,
                                  const Eigen::Ref<const Eigen::RowVectorXd>& y,
                                  const Eigen::Ref<const Eigen::RowVectorXd>& y_sim) {
@@ -32,7 +32,7 @@ std::vector<DiagonalFit> diagonal_fits(const NominalSensitivity& sensitivity, do
   for (std::size_t a = 0; a < sensitivity.active.size(); ++a) {
     const Eigen::Index cv = sensitivity.active[a].cv;
     const Eigen::MatrixXd& response = sensitivity.step_response[a];
-    // Two samples determine the two parameters of any model: nothing to fit.
+    // With fewer than 3 samples there is nothing to fit: two samples determine the two parameters.
     fits.push_back(
         {cv, response.cols() < 3 ? SecondOrderFit{} : fit_second_order(response.row(cv), sample_time)});
   }
@@ -52,7 +52,7 @@ S0Perturbation::S0Perturbation(const Study& study, const NominalSensitivity& sen
     const auto [tau, xi] = fit.model;
     const Eigen::RowVectorXd T = second_order_response({tau, xi}, Ts, T0.size());
     Models models{cv, {}, {}};
-    // The difference first: at a multiplier of 1 it is zero, and T0 + 0 is T0 to the last bit.
+    // The difference is computed first: for a multiplier of 1 it is zero, and T0 + 0 is T0 to the last bit.
     for (const double m : study.s0_perturbation.multipliers) {
       models.time_constant.emplace_back(T0 + (second_order_response({m * tau, xi}, Ts, T0.size()) - T));
       models.damping.emplace_back(T0 + (second_order_response({tau, m * xi}, Ts, T0.size()) - T));

@@ -13,17 +13,17 @@
 
 namespace mpm {
 
-/// (6.24) fitted to the diagonal element of one active CV.
+/// The model (6.24), fitted to the diagonal element of T0 of one active CV.
 struct DiagonalFit {
   Eigen::Index cv;
   SecondOrderFit fit;
 };
 
-/// The fits of all active CVs of T0, in their order.
+/// Returns the fits of all active CVs of T0, in their order.
 std::vector<DiagonalFit> diagonal_fits(const NominalSensitivity& sensitivity, double sample_time);
 
-/// Ivar_diag of the affected CV of one experiment, one value a multiplier of the study; empty for an
-/// experiment that is not looked at.
+/// Ivar_diag of the affected CV of one experiment, with one value for each multiplier of the study. Empty if
+/// the experiment is not examined.
 struct PerturbedIvar {
   Eigen::VectorXd time_constant;  ///< tau of (6.24) multiplied
   Eigen::VectorXd damping;        ///< xi of (6.24) multiplied
@@ -33,22 +33,22 @@ struct PerturbedIvar {
 ///
 ///   T0_modified = T0 + T(m tau, xi) - T(tau, xi)   or   T0 + T(tau, m xi) - T(tau, xi).
 ///
-/// What the second order cannot describe (the dead time, above all) thus stays as it is, and a multiplier of
-/// 1 gives T0 itself, bit for bit.
+/// Thus the properties that a second-order model cannot describe (above all the dead time) stay as they are,
+/// and a multiplier of 1 gives T0 itself, bit for bit.
 class S0Perturbation {
  public:
-  /// Without multipliers in the study, or for a T0 that cannot be fitted, there is no modified model.
+  /// If the study has no multipliers, or if T0 cannot be fitted, there is no modified model.
   S0Perturbation(const Study& study, const NominalSensitivity& sensitivity);
 
-  /// Ivar_diag of `cv` (6.8) from its record y and model output y_sim (N samples each) with each modified
-  /// model; empty for a CV without one. Throws InputError when the lengths differ.
+  /// Returns Ivar_diag of `cv` (6.8) with each modified model, from its record y and model output y_sim (N
+  /// samples each). Empty if the CV has no modified model. Throws InputError if the lengths differ.
   PerturbedIvar ivar_diag(Eigen::Index cv, const Eigen::Ref<const Eigen::RowVectorXd>& y,
                           const Eigen::Ref<const Eigen::RowVectorXd>& y_sim) const;
 
  private:
   struct Models {
     Eigen::Index cv;
-    std::vector<Eigen::RowVectorXd> time_constant, damping;  ///< step responses, one a multiplier
+    std::vector<Eigen::RowVectorXd> time_constant, damping;  ///< step responses, one for each multiplier
   };
   std::vector<Models> models_;
 };

@@ -15,14 +15,14 @@
 namespace mpm {
 namespace {
 
-constexpr double kWidest = 100.0;  // of the time constant beyond sample time and record, and of the damping
+constexpr double kWidest = 100.0;  // factor of the limits of time constant and damping
 
 void require_positive(const char* name, double value) {
   if (!(value > 0.0) || !std::isfinite(value))
     throw InputError(name, fmt::format("{}", value), "a number > 0");
 }
 
-/// Residuals over (log tau, log xi), in the form that Eigen's port of MINPACK asks for.
+/// Residuals as a function of (log tau, log xi), in the form that Eigen's port of MINPACK requires.
 struct Residual {
   using Scalar = double;
   using InputType = Eigen::VectorXd;
@@ -44,7 +44,7 @@ struct Residual {
   bool inside(const Eigen::VectorXd& x) const {
     return (x.array() > lowest().array()).all() && (x.array() < highest().array()).all();
   }
-  /// The function stays at its value at the limits, so that the method ends when it runs into one.
+  /// Beyond a limit the function keeps its value at the limit, so that the method ends when it runs into one.
   int operator()(const Eigen::VectorXd& x, Eigen::VectorXd& residual) const {
     const Eigen::Vector2d at = x.cwiseMax(lowest()).cwiseMin(highest()).array().exp();
     residual = (second_order_response({at(0), at(1)}, sample_time, response.size()) - response).transpose();
@@ -52,7 +52,7 @@ struct Residual {
   }
 };
 
-/// Samples until the response first passes half of its last value.
+/// Returns the number of samples until the response first passes half of its last value.
 double half_time(const Eigen::RowVectorXd& response) {
   const double half = 0.5 * response(response.size() - 1);
   Eigen::Index l = 0;
@@ -86,7 +86,7 @@ SecondOrderFit fit_second_order(const Eigen::Ref<const Eigen::RowVectorXd>& step
   const double half = sample_time * half_time(response);
   double least = kInfinity;
   for (const double xi : std::array{0.4, 0.8, 1.5, 4.0}) {
-    // A response of this damping passes one half after about (0.6 + 1.1 xi) tau.
+    // A response with this damping passes one half after about (0.6 + 1.1 xi) tau.
     Eigen::VectorXd x = Eigen::Vector2d(std::log(half / (0.6 + 1.1 * xi)), std::log(xi));
     Eigen::NumericalDiff<Residual, Eigen::Central> derivative(residual);
     Eigen::LevenbergMarquardt<Eigen::NumericalDiff<Residual, Eigen::Central>> method(derivative);

@@ -21,17 +21,17 @@ struct SecondOrderModel {
   double damping = kNaN;
 };
 
-/// Unit step response of the model, `samples` values 1, 2, ... sample times after the step. Throws InputError
-/// unless time constant, damping and sample time are > 0.
+/// Returns the unit step response of the model: `samples` values, 1, 2, ... sample times after the step.
+/// Throws InputError unless time constant, damping and sample time are > 0.
 Eigen::RowVectorXd second_order_response(const SecondOrderModel& model, double sample_time,
                                          Eigen::Index samples);
 
 enum class FitStatus : std::int8_t {
   ok = 0,
-  failed = 1,  ///< numbers that are not finite, or no minimum at a time constant and damping of any use
+  failed = 1,  ///< numbers that are not finite, or no minimum within the limits of time constant and damping
 };
 
-/// The model nearest to a step response, in the sense of least squares over its samples.
+/// The least-squares fit of the model to the samples of a step response.
 struct SecondOrderFit {
   FitStatus status = FitStatus::failed;
   SecondOrderModel model;   ///< NaN unless ok
@@ -39,10 +39,10 @@ struct SecondOrderFit {
 };
 
 /// Fits (6.24) to a unit step response (1 x L, values 1 ... L sample times after the step) by the
-/// Levenberg-Marquardt method over log tau and log xi, from several starting points of which the best end
-/// counts: a response that looks like one of first order has a second, worse minimum at xi without bounds.
-/// Time constants outside Ts/100 to 100 L Ts and dampings outside 0.01 to 100 are no answer. Throws
-/// InputError for fewer than 3 samples or a sample time <= 0.
+/// Levenberg-Marquardt method over log tau and log xi. It starts from several points and takes the best
+/// result: a response that looks like first order has a second, worse minimum at which xi grows without
+/// bound. A result with a time constant outside Ts/100 to 100 L Ts or a damping outside 0.01 to 100 is
+/// rejected. Throws InputError for fewer than 3 samples or a sample time <= 0.
 SecondOrderFit fit_second_order(const Eigen::Ref<const Eigen::RowVectorXd>& step_response,
                                 double sample_time);
 
