@@ -24,7 +24,7 @@ QuantityScope table_scope(NumberScope scope) {
     case NumberScope::cv:
       return QuantityScope::cv;
     case NumberScope::channel:
-    case NumberScope::cv_lag:  // of no method whose numbers stand in a table
+    case NumberScope::cv_lag:  // no method in a table has such numbers
     case NumberScope::window:
       break;
   }

@@ -7,22 +7,22 @@
 
 #include "analysis/reproduction/table_reproduction.hpp"
 
-// The same table with several seeds: which verdicts are those of the loop, and which those of its noise.
+// The same table with several seeds: it shows which verdicts depend on the loop, and which on its noise.
 
 namespace mpm {
 
 /// A cell of a table over the seeds.
 struct SeededCell {
   TableCell cell;
-  std::optional<std::string> thesis_verdict;  ///< none when the thesis's cell is not judged
-  double median;                ///< of ours, over the seeds that have a number; NaN when none has
-  int numbers = 0;              ///< how many have one
-  std::optional<double> share;  ///< of all seeds, those whose verdict agrees; none when it is not judged
+  std::optional<std::string> thesis_verdict;  ///< none if the thesis's cell is not judged
+  double median;                ///< of our numbers, over the seeds with a number; NaN if none has one
+  int numbers = 0;              ///< number of seeds with a number
+  std::optional<double> share;  ///< share of all seeds whose verdict agrees; none if not judged
 };
 
 struct SeededRow {
   std::string label;
-  std::string remark;  ///< the first one of a seed, and how many have one; empty when none has
+  std::string remark;  ///< the first remark of a seed, with the number of seeds that have one; empty if none
   std::vector<SeededCell> cells;
 };
 
@@ -30,17 +30,17 @@ struct SeededRow {
 struct SeededTable {
   ThesisTable table;
   std::vector<SeededRow> rows;
-  std::vector<int> agreeing;  ///< verdicts that agree, one number a seed
-  int judged = 0;             ///< of as many
+  std::vector<int> agreeing;  ///< number of verdicts that agree, for each seed
+  int judged = 0;             ///< number of verdicts that are judged
 
-  /// How many agree on average over the seeds: the sum of all shares.
+  /// Returns the mean over the seeds of the number of verdicts that agree, which is the sum of all shares.
   double mean_agreeing() const;
 };
 
-/// The table with the seeds of its studies raised by `offset`.
+/// Returns the table with the seeds of its studies raised by `offset`.
 ThesisTable with_seed_offset(ThesisTable table, std::uint64_t offset);
 
-/// What `runs`, the same table with one seed each, have in common. There must be one or more.
+/// Combines `runs`, the same table with one seed each. There must be at least one.
 SeededTable over_seeds(const std::vector<ReproducedTable>& runs);
 
 }  // namespace mpm

@@ -24,13 +24,13 @@ std::optional<double> number_or_none(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
-/// The loops of a table: each scenario is run once.
+/// The loops of a table. Each scenario is run only once.
 class Loops {
  public:
   Loops(const ThesisTable& table, const QpSolverFactory& factory, BasisCases& basis_cases)
       : table_(table), factory_(factory), basis_cases_(basis_cases) {}
 
-  /// The loop of this row; null with a remark when the basis case has none.
+  /// Returns the loop of this row; null, with a remark, if the basis case did not run to its end.
   ScenarioQuantities* of(const TableRow& row, std::string& remark) {
     const Study& study = table_.studies.at(row.variant);
     const BasisCase& basis = basis_cases_.of(study);
@@ -49,7 +49,7 @@ class Loops {
   }
 
  private:
-  /// The basis case of a variant; none when it did not run to its end.
+  /// Returns the basis case of a variant; none if it did not run to its end.
   std::optional<AssessedLoop> benchmark_of(const std::string& variant) {
     const Study& study = table_.studies.at(variant);
     const BasisCase& basis = basis_cases_.of(study);
@@ -72,7 +72,7 @@ class Loops {
   std::map<std::tuple<std::string, std::string, std::string>, std::unique_ptr<ScenarioQuantities>> loops_;
 };
 
-/// The place of a name that a cell need not have; -1 without one.
+/// Returns the place of a name in `variables`; -1 if the cell has no name.
 Eigen::Index place(const std::vector<PlantModel::Variable>& variables, const std::string& name) {
   for (std::size_t i = 0; i < variables.size(); ++i)
     if (variables[i].name == name)

@@ -8,30 +8,32 @@
 #include "analysis/study_files/thesis_table.hpp"
 #include "solvers/qp_solver.hpp"
 
-// The tables of the thesis, cell by cell: our number, the thesis's, and whether the same is concluded.
+// The tables of the thesis, cell by cell: our number, that of the thesis, and whether both lead to the same
+// verdict.
 
 namespace mpm {
 
-/// A cell of a table beside ours.
+/// A cell of a table of the thesis, with our number.
 struct ReproducedCell {
   TableCell cell;
-  double ours;  ///< NaN when the loop did not run to its end, or the quantity is not determined
-  std::optional<std::string> our_verdict, thesis_verdict;  ///< none without a rule, or without a number
+  double ours;  ///< NaN if the loop did not run to its end, or if the quantity is not determined
+  std::optional<std::string> our_verdict, thesis_verdict;  ///< none if there is no rule or no number
 
-  /// Ours over the thesis's; none when one of them is missing or the thesis's is zero.
+  /// Returns our number divided by that of the thesis; none if either is missing or that of the thesis is
+  /// zero.
   std::optional<double> ratio() const;
-  /// Both are judged, and alike; none when the thesis's cell is not judged. A number that we cannot determine
-  /// does not agree.
+  /// Returns whether our verdict equals that of the thesis; none if the thesis's cell is not judged. A number
+  /// that we cannot determine does not agree.
   std::optional<bool> agrees() const;
 };
 
 struct ReproducedRow {
   std::string label;
-  std::string remark;  ///< why there are no numbers; empty when there are
+  std::string remark;  ///< why there are no numbers; empty if there are
   std::vector<ReproducedCell> cells;
 };
 
-/// How many of the judged cells agree.
+/// The number of judged cells, and how many of them agree.
 struct Agreement {
   int agreeing = 0;
   int judged = 0;
@@ -46,26 +48,26 @@ struct ReproducedTable {
   Agreement agreement() const;
 };
 
-/// What the loops of a table give: for each of its rows the number of each cell, NaN as in ReproducedCell.
+/// The results of the loops of a table: for each row the number of each cell, NaN as in ReproducedCell.
 struct TableNumbers {
   struct Row {
-    std::string remark;  ///< of ReproducedRow
+    std::string remark;  ///< as in ReproducedRow
     std::vector<double> ours;
   };
   std::vector<Row> rows;
 };
 
-/// Runs every loop of the table. Each study is run with its own basis case and S0, from `basis_cases`, where
-/// other tables that have the study find them. Throws InputError as run_basis_case(). The table must have
+/// Runs every loop of the table. Each study has its own basis case and S0 from `basis_cases`, where other
+/// tables with the same study find them again. Throws InputError as run_basis_case(). The table must have
 /// been read with ScenarioQuantities::known().
 TableNumbers table_numbers(const ThesisTable& table, const QpSolverFactory& factory, BasisCases& basis_cases);
 
-/// Judges every cell by the rules of the table, ours and the thesis's by the same.
+/// Judges every cell by the rules of the table, which are the same for our number and that of the thesis.
 ReproducedTable reproduced(ThesisTable table, const TableNumbers& numbers);
 
-/// The verdicts on the numbers of one column or row: judge(numbers)[i] for `i` of them. For any_above and
-/// any_within `numbers` are those of the row that the rule is for; for rank those of the column. Entries are
-/// none where there is no number.
+/// Returns the verdicts on the numbers of one column or row, in the order of `numbers`. For any_above and
+/// any_within, `numbers` are those of the row to which the rule applies; for rank, those of the column. A
+/// verdict is none if there is no number.
 std::vector<std::optional<std::string>> judge(const VerdictRule& rule,
                                               const std::vector<std::optional<double>>& numbers);
 
