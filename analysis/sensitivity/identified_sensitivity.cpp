@@ -36,7 +36,8 @@ IdentifiedRow identified_row(const Eigen::VectorXd& y, const Eigen::Ref<const Ei
   const OrderCandidate& best = selection.candidates[*selection.best];
   row.validation_fit = best.validation_fit;
   row.identification = identify(y, r, best.order, options.fit);
-  // On the whole record the search may fail. The model of its first part is then the result.
+  // The search on the whole record may get lost from its starting point. The result is then the model of the
+  // first part of the record.
   if (!is_usable(row.identification.status))
     row.identification = best.identification;
   return row;

@@ -34,7 +34,8 @@ Eigen::MatrixXd relative_gain_magnitudes(const TransferMatrix& G, const LoopInte
   return relative_gains(response(of.cvs, of.mvs)).cwiseAbs();
 }
 
-/// Returns the entries above their neighbours; of equal ones, the first. There is at least one.
+/// Returns the places of the values above their neighbours; of equal values, the first. There is at least
+/// one.
 std::vector<Eigen::Index> local_maxima(const Eigen::VectorXd& values) {
   std::vector<Eigen::Index> found;
   for (Eigen::Index i = 0; i < values.size(); ++i) {
