@@ -8,8 +8,8 @@
 namespace mpm {
 namespace {
 
-/// The rate of all loops with the worlds of all cells as its clusters: as if they were drawn from one place,
-/// so that its interval is rather too long.
+/// Returns the rate over all loops, with the worlds of all cells as its clusters. It treats the worlds as
+/// drawn from one population, so an interval computed from them tends to be too long.
 Rate with_worlds(const Leaderboard& board, std::size_t method, std::string_view name) {
   Rate rate = board.overall[method].rates[name];
   rate.clusters.clear();

@@ -9,7 +9,7 @@
 
 namespace mpm {
 
-/// A rate of a method on the loops of a board and on those of another seed of its suite.
+/// A rate of a method on the loops of a board, and the same rate on a rerun of its suite with another seed.
 struct RerunRate {
   std::string method;
   std::string_view rate;            ///< in rate_rows()
@@ -20,8 +20,8 @@ struct RerunRate {
   bool differs(double significance) const { return p_holm < significance; }
 };
 
-/// These rates of the methods that both boards have and count, over all loops. The second board is that of a
-/// run on another seed.
+/// Compares `rates` over all loops, for each method that both boards have. `rerun` is the board of a run with
+/// another seed. Leaves out a rate that counts no loop on one of the boards.
 std::vector<RerunRate> rerun_rates(const Leaderboard& board, const Leaderboard& rerun,
                                    const std::vector<std::string_view>& rates);
 

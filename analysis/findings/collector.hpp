@@ -12,7 +12,7 @@ namespace mpm {
 template <class Result>
 struct Collector {
   std::function<void(const ExperimentRecord&)> add;
-  std::function<Result()> result;  ///< of all records, once: it takes what was collected
+  std::function<Result()> result;  ///< of all records; call it once, it may move out what was collected
 
   Result of(const RecordRange& records) const {
     records.each(add);
@@ -20,7 +20,7 @@ struct Collector {
   }
 };
 
-/// A collector of the result of `counts`, which has the members add(record) and result().
+/// Returns a collector that is built on `counts`, which has the members add(record) and result().
 template <class Counts>
 auto collector_of(Counts counts) -> Collector<decltype(counts.result())> {
   const auto shared = std::make_shared<Counts>(std::move(counts));

@@ -13,10 +13,10 @@ struct Endings {
   std::int64_t experiments = 0;
   std::int64_t failed = 0;
   Rate infeasible;            ///< of the experiments that did not fail
-  Rate unstable;              ///< of the experiments of which it is known whether their loop is stable
-  std::int64_t excluded = 0;  ///< unstable ones that the study leaves out
+  Rate unstable;              ///< of the experiments for which it is known whether the loop is stable
+  std::int64_t excluded = 0;  ///< unstable experiments that the study leaves out
 
-  /// Counts an experiment; `infeasible` and `unstable` are rates once all are counted.
+  /// Counts an experiment. When all are counted, finish() turns `infeasible` and `unstable` into rates.
   void add(const ExperimentRecord& record) {
     ++experiments;
     failed += record.status == ExperimentStatus::failed ? 1 : 0;

@@ -23,8 +23,8 @@ MismatchParameter parameter_of(FaultSize size) {
   }
 }
 
-/// The size of the only fault of a random experiment; none when it is of another sort, as a changed actuator
-/// or a changed number of a nonlinear plant is.
+/// Returns the size of the only fault of a random experiment; none if the fault is of another sort, such as a
+/// changed actuator or a changed parameter of a nonlinear plant.
 std::optional<double> size_of(const Study& study, const ExperimentDraw& draw, FaultSize size) {
   if (size == FaultSize::disturbance_deviation) {
     if (draw.kind != ExperimentKind::ud || draw.named || draw.disturbances.empty())

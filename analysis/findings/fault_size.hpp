@@ -37,22 +37,22 @@ struct SizedFault {
   bool diagnosed;  ///< seen, and both the CV and the source are right
 };
 
-/// The experiments whose only fault is measured by `size` and on which the method at place `method` of the
-/// assessments gave a verdict, smallest first.
+/// Returns the experiments whose only fault is measured by `size` and on which the method at place `method`
+/// of the assessments gave a verdict, the smallest fault first.
 std::vector<SizedFault> faults_by_size(const Study& study, std::size_t method, const RecordRange& records,
                                        FaultSize size);
 
-/// Faults of similar size, with the share of them that is seen and the share that is diagnosed rightly, both
-/// of all of them.
+/// Faults of similar size, with the share that is flagged and the share that is diagnosed correctly. Both are
+/// shares of all faults of the bin.
 struct SizeBin {
   double smallest, median, largest;
   Rate flagged;
   Rate diagnosed;
 };
 
-/// Cuts `faults` (in ascending order) into `bins` parts of equal number as near as can be: each share then
-/// has about the same uncertainty, whatever the distribution of the sizes. Fewer parts when there are fewer
-/// faults.
+/// Cuts `faults` (in ascending order) into `bins` parts with as nearly equal numbers as possible. Each share
+/// then has about the same uncertainty, whatever the distribution of the sizes. Returns fewer parts if there
+/// are fewer faults.
 /// @throws InputError unless bins >= 1 and 0 < confidence < 1
 std::vector<SizeBin> size_bins(std::span<const SizedFault> faults, int bins, double confidence);
 

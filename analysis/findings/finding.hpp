@@ -16,28 +16,28 @@ namespace mpm {
 
 /// How people read a finding.
 enum class FindingForm : std::int8_t {
-  share,   ///< of experiments, 0 ... 1: a percentage
-  number,  ///< any other
+  share,   ///< of experiments, 0 ... 1; people read a percentage
+  number,  ///< any other number
 };
 
 template <>
 inline constexpr auto kWords<FindingForm> = word_list("share", "number");
 
-/// Under which heading a table of findings has it.
+/// The heading under which a table lists a finding.
 enum class FindingGroup : std::int8_t {
   study,      ///< all experiments
   kind,       ///< the experiments of one kind: Finding::kind
   dominance,  ///< experiments with both faults, by the dominance of the mismatch
   s0,         ///< effect of an error in S0
   faultless,  ///< experiments in which model and plant agree
-  method,     ///< a method on all loops, as methods are compared: Finding::method
+  method,     ///< one method (Finding::method) on all loops, to compare methods
 };
 
-/// Who shows a finding besides archive, gates and JSON, which have all of them.
+/// Where a finding is shown. Archive, gates and JSON have every finding in any case.
 enum class Prominence : std::int8_t {
-  headline,  ///< the first ones that a reader asks for: figures and the table of a sweep as well
-  table,     ///< the tables of summary and report
-  detail,    ///< nobody
+  headline,  ///< what a reader asks for first: shown in figures and in the table of a sweep as well
+  table,     ///< shown in the tables of summary and report
+  detail,    ///< shown nowhere else
 };
 
 /// One statistic of a study: its name, its meaning, and its value with its uncertainty. Archive, summary,
@@ -51,20 +51,21 @@ struct Finding {
   FindingGroup group = FindingGroup::study;
   Prominence prominence = Prominence::table;
   std::optional<ExperimentKind> kind = {};  ///< of the experiments; none: of several kinds
-  std::string method = {};                  ///< whose answers they are; empty: of no method
-  bool has_interval = true;                 ///< can it have one? Least and largest values never do
+  std::string method = {};                  ///< method whose answers are counted; empty: no method
+  bool has_interval = true;                 ///< whether it can have one; least and largest values cannot
   double value = kNaN;
   Interval interval{kNaN, kNaN};
   std::int64_t count = 0;        ///< experiments, pairs or loops behind it
-  std::int64_t hits = -1;        ///< of a share, those that count; -1: no share
-  double reported = kNaN;        ///< by others, as the study says; NaN: nothing
-  std::int64_t reported_of = 0;  ///< experiments that it is a share of; 0: not told
+  std::int64_t hits = -1;        ///< of a share: how many of `count` are hits; -1: not a share
+  double reported = kNaN;        ///< value that others reported, as the study states; NaN: none
+  std::int64_t reported_of = 0;  ///< number of experiments behind `reported`; 0: not stated
 
   bool is_share() const { return form == FindingForm::share; }
   bool has_reported() const { return reported == reported; }
-  /// Can the measured and the reported number be the same truth? Of two shares of so many experiments, when
-  /// the interval of their difference holds 0 (difference_interval()); of any other number, when its interval
-  /// holds the reported one, which is taken for exact. None without an interval or a reported number.
+  /// Whether the measured and the reported number can have the same true value. Two shares with known numbers
+  /// of experiments agree if the interval of their difference contains 0 (difference_interval()). Any other
+  /// number agrees if its interval contains the reported number, which is taken as exact. None without an
+  /// interval or a reported number.
   std::optional<bool> agrees(double confidence) const;
 
   /// The finding with this value.

@@ -16,7 +16,7 @@ std::size_t loops_that_differ(const CellScores& one, const CellScores& other) {
   return differing;
 }
 
-/// What a method of the finished board said, of the loops whose truth is the same in both.
+/// The scores of a method of the finished board on the loops whose truth is the same in both runs.
 MethodScores on_same_loops(const CellScores& cell, const CellScores& theirs, const MethodScores& scores) {
   LoopOutcomes outcomes = scores.outcomes;
   for (std::size_t i = 0; i < outcomes.size(); ++i)
@@ -29,7 +29,7 @@ MethodScores on_same_loops(const CellScores& cell, const CellScores& theirs, con
   return same;
 }
 
-/// Can the two be held against each other loop by loop? Says why not.
+/// Whether the two cells can be compared loop by loop. Adds a note if they cannot, or not on every loop.
 bool has_same_loops(const CellScores& cell, const CellScores* theirs, const std::string& name,
                     std::vector<std::string>& notes) {
   if (theirs == nullptr)

@@ -32,7 +32,7 @@ enum class GateDoubt : std::int8_t {
   no_value,     ///< nothing was measured, or no finite number
   too_few,      ///< less than minimum_count
   no_interval,  ///< judged by an interval that the number does not have
-  straddles,    ///< part of the interval keeps to the limits, and part does not
+  straddles,    ///< part of the interval is within the limits, and part is not
 };
 
 struct GateResult {

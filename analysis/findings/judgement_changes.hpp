@@ -10,7 +10,7 @@
 
 namespace mpm {
 
-/// The two results of one question to an experiment that was run twice.
+/// The results of one question in two runs of the same experiment.
 struct JudgementPair {
   std::int64_t index;
   Correctness before, now;
@@ -19,15 +19,15 @@ struct JudgementPair {
 
 /// How the judgements on the same experiments differ between two runs of a study.
 ///
-/// A right one is lost when it is wrong now and also when it is not judged any more: an experiment that has
+/// A right judgement is lost if it is wrong now, and also if it is no longer judged: an experiment that has
 /// become infeasible, or has dropped out of the population, must not make a worse chain look better.
 struct JudgementChanges {
-  std::int64_t pairs = 0;             ///< experiments that are judged in one of the runs at least
+  std::int64_t pairs = 0;             ///< experiments that are judged in at least one of the runs
   std::vector<JudgementPair> lost;    ///< right before and not now
   std::vector<JudgementPair> gained;  ///< right now and not before
-  WorldPairs clusters = {};           ///< all of them; a cluster is a world
+  WorldPairs clusters = {};           ///< all pairs; a cluster is a world
 
-  /// Of the hypothesis that a changed one is as likely lost as gained: clustered_mcnemar().
+  /// Tests the hypothesis that a changed judgement is as likely lost as gained: clustered_mcnemar().
   McNemarTest test() const { return clusters.mcnemar(); }
   /// Counts a pair, unless it is judged in neither run.
   void add(JudgementPair pair, int cluster);

@@ -34,13 +34,13 @@ class IvarPairs {
       cluster.insert(cluster.end(), x_.size() / experiments_.size(), experiment);
     return fit(study, which, cluster, 0, 1);
   }
-  /// Of those of one of `ny` CVs.
+  /// Fits the pairs of one of `ny` CVs.
   LinearFitIntervals fit_of(std::size_t cv, std::size_t ny, const Study& study, std::uint64_t which) const {
     return fit(study, which, experiments_, cv, ny);
   }
 
  private:
-  /// Of every `stride`-th pair from `first` on.
+  /// Fits every `stride`-th pair from `first` on.
   LinearFitIntervals fit(const Study& study, std::uint64_t which, std::span<const std::int64_t> cluster,
                          std::size_t first, std::size_t stride) const {
     using Pairs = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>;
@@ -58,13 +58,13 @@ class IvarPairs {
   std::vector<std::int64_t> experiments_;
 };
 
-/// Are conditions of the loop known that could be a cause?
+/// Whether any condition of the loop that can be a cause is known.
 bool some_known(const LoopConditions& conditions) {
   return !std::isnan(conditions.spectral_radius) || !std::isnan(conditions.other_cv_active) ||
          !std::isnan(conditions.mv_at_limit);
 }
 
-/// The pairs of the experiments without one cause.
+/// The pairs of the experiments that do not have the cause `cause`.
 struct PairsWithoutCause {
   NonlinearCause cause;
   std::int64_t experiments = 0;
@@ -153,7 +153,7 @@ class KindCounts {
  private:
   void fit_regressions(KindFindings& result) const {
     const auto ny = static_cast<std::size_t>(study_.cv_count());
-    // A bootstrap stream of its own for every fit, so that no fit depends on which others are made.
+    // Every fit has its own bootstrap stream, so that it does not depend on which other fits are made.
     const std::uint64_t first = static_cast<std::uint64_t>(result.kind) * (ny + 1);
     result.regression = pairs_.fit(study_, first);
     for (std::size_t cv = 0; cv < ny; ++cv)
@@ -253,7 +253,7 @@ class SourceScores {
       return source;
     source.area =
         area_interval(source.curve.area, source.curve.positives, source.curve.negatives, options.confidence);
-    // The regressions have the first streams of this purpose, this one the last.
+    // The regressions use the first bootstrap streams, so this interval uses the last one.
     RandomStream stream(study_.seed, std::numeric_limits<std::uint64_t>::max(), StreamId::bootstrap);
     source.best_threshold =
         best_threshold_interval(mpm_, ud_, stream, {options.bootstrap_replications, options.confidence});
@@ -283,7 +283,7 @@ void append_regression(const LinearFitIntervals& fit, const Finding& like, const
   rows.back().prominence = Prominence::detail;
 }
 
-/// What one linear S0 explains of loops without a cause why it does not.
+/// Returns the row of R^2 over the loops without a cause for which one linear S0 fails.
 Finding without_cause_row(const KindFindings::WithoutCause& without, Finding like,
                           const std::string& prefix) {
   const bool any = without.cause == NonlinearCause::none;

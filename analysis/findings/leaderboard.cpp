@@ -13,10 +13,10 @@
 namespace mpm {
 namespace {
 
-/// Of either source: of fewer loops it is chance that it was never named.
+/// The fewest loops of each source: on fewer, it may be chance that the method never named the source.
 constexpr std::int64_t kFewestOfSource = 10;
 
-/// Of a rate that was counted on some loop.
+/// Whether the rate counts some loop and reaches `least`.
 bool at_least(const Rate& rate, double least) {
   return rate.total > 0 && rate.value >= least;
 }
@@ -65,7 +65,7 @@ PooledScores pool(std::size_t method, const std::vector<CellScores>& cells, doub
   return pooled;
 }
 
-/// The entries of an axis that some cell has, with the places of the cells counted anew.
+/// Returns the entries of an axis that some cell has, and gives the cells their new places among these.
 std::vector<SuiteAxis> used(const std::vector<SuiteAxis>& axis, std::vector<CellScores>& cells,
                             std::size_t CellScores::*place) {
   std::vector<SuiteAxis> kept;
@@ -89,7 +89,7 @@ void add_shares(const PooledScores& reference, PooledScores& scores) {
   }
 }
 
-/// Holds every method against the reference, family by family.
+/// Compares every method with the reference, family by family.
 void add_shares(Leaderboard& board) {
   const auto reference = std::find(board.methods.begin(), board.methods.end(), kReferenceMethod);
   if (reference == board.methods.end())

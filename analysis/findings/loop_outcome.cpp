@@ -74,7 +74,8 @@ OutcomeScope outcome_scope(const Study& study, const MethodDescription& method,
 
 namespace {
 
-/// Is the source that it tells one that such a method can tell, and what the facts about it say?
+/// Whether the source that it tells is one that a method of this scope can tell, and agrees with the facts
+/// `names_source` and `right_source`.
 bool is_told_rightly(const LoopOutcome& said, const FaultTruth& truth, const OutcomeScope& scope) {
   const FaultSource told = source_of(said.told);
   if (!scope.is_told || !scope.tells_sources)

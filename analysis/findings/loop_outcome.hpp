@@ -9,8 +9,8 @@
 #include "analysis/findings/calibration.hpp"
 #include "scenarios/faults/told_source.hpp"
 
-// The facts about a loop, and about the answer of a method, that rates are made from; so few that finished
-// results can be kept, counted again, and held against those of another method loop by loop.
+// The facts about a loop, and about the answer of a method, from which rates are computed. They are so few
+// that finished results can be kept, counted again, and compared with those of another method loop by loop.
 
 namespace mpm {
 
@@ -27,29 +27,30 @@ struct FaultTruth {
   bool operator==(const FaultTruth&) const = default;
 };
 
-/// What a method said about a loop. A fact more is a member here, a row in outcome_facts(), and what
-/// outcome_of() puts into it.
+/// What a method said about a loop. A new fact needs a member here, a row in outcome_facts(), and a value in
+/// SeenLoop::outcome() (method_rates.cpp).
 struct LoopOutcome {
   bool answered = false;
   bool flagged = false;
   bool above_05 = false;       ///< its score exceeds the threshold calibrated for 5 % false alarms
-  bool above_chosen = false;   ///< that for calibration.false_alarms
+  bool above_chosen = false;   ///< its score exceeds the threshold calibrated for calibration.false_alarms
   bool right_cv = false;       ///< the CV with the largest score is the one that the fault affects
   bool right_source = false;   ///< names_source() of the source that it would name if it flagged the loop
   bool above_01 = false;       ///< its score exceeds the threshold calibrated for 1 % false alarms
-  bool above_not_mpm = false;  ///< that for 5 % among loops without a mismatch
-  bool names_source = false;   ///< named_source() is one
-  Correctness channel = {};    ///< as in Judgement, and so are the next ones
+  bool above_not_mpm = false;  ///< its score exceeds the threshold for 5 % among loops without a mismatch
+  bool names_source = false;   ///< named_source() is a source
+  Correctness channel = {};    ///< as in Judgement, and so are the next three
   Correctness parameter = {};
   Correctness size = {};
   Correctness candidate = {};
   Correctness window = {};  ///< a window that ends after the onset of a fault with an impact is flagged
-  /// The source that it would name if it flagged the loop has a mismatch where the fault has one, and has
-  /// none where the fault is a disturbance alone.
+  /// Whether the source that it would name if it flagged the loop includes a mismatch if the fault does, and
+  /// does not if the fault is a disturbance alone.
   Correctness mismatch = {};
-  /// CalibratedThresholds::redraws_exceeded_by() its score: what `above_05` would be under other thresholds.
+  /// CalibratedThresholds::redraws_exceeded_by() of its score: shows what `above_05` would be under other
+  /// thresholds.
   std::uint8_t redrawn_05 = 0;
-  /// The source that it would name if it flagged the loop; none of a method that tells none.
+  /// The source that it would name if it flagged the loop; none for a method that tells no sources.
   ToldSource told = ToldSource::none;
 
   bool operator==(const LoopOutcome&) const = default;
@@ -57,16 +58,16 @@ struct LoopOutcome {
 
 /// A member of LoopOutcome as a whole number.
 struct OutcomeFact {
-  unsigned bits;  ///< of this number
+  unsigned bits;  ///< that the number needs
   unsigned (*get)(const LoopOutcome&);
   void (*set)(LoopOutcome&, unsigned);  ///< a number that the member cannot have becomes 0
 };
 
-/// Every member once. Files keep them in this order: a further fact goes to the end.
+/// Returns every member once. Files store them in this order, so a new fact goes to the end.
 std::vector<OutcomeFact> outcome_facts();
 
-/// One a loop, in the order of the loops; none for a loop that did not run to its end, at which no method has
-/// looked.
+/// One entry per loop, in the order of the loops; none for a loop that did not run to its end, which no
+/// method assessed.
 using LoopTruths = std::vector<std::optional<FaultTruth>>;
 using LoopOutcomes = std::vector<std::optional<LoopOutcome>>;
 
@@ -75,13 +76,13 @@ struct OutcomeScope {
   bool locates_cvs = false;
   bool tells_sources = false;
   bool at_05 = false;      ///< it has the threshold calibrated for 5 %
-  bool at_chosen = false;  ///< that for calibration.false_alarms
+  bool at_chosen = false;  ///< it has the threshold calibrated for calibration.false_alarms
   bool in_worlds = false;
   bool at_01 = false;         ///< it has the threshold calibrated for 1 %
-  bool at_not_mpm = false;    ///< that for 5 % among loops without a mismatch
+  bool at_not_mpm = false;    ///< it has the threshold for 5 % among loops without a mismatch
   bool chosen_is_05 = false;  ///< calibration.false_alarms are 5 %
-  bool is_whole = false;      ///< all facts before `told` are known; otherwise those up to `right_source`
-  bool is_told = false;       ///< LoopOutcome::told is known
+  bool is_whole = false;  ///< all facts before `told` are known; otherwise only those up to `right_source`
+  bool is_told = false;   ///< LoopOutcome::told is known
 };
 
 FaultTruth truth_of(const Study& study, const ExperimentRecord& record);

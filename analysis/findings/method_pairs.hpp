@@ -10,17 +10,18 @@
 
 namespace mpm {
 
-/// Two methods on the same loops: is one right where the other is wrong? Counted are the loops on which both
-/// gave a verdict. In worlds the test is clustered_mcnemar(), worlds being the clusters.
+/// Compares two methods on the same loops: how often one is right where the other is wrong. Only loops on
+/// which both gave a verdict count. In worlds the test is clustered_mcnemar(), with the worlds as clusters.
 struct MethodPair {
   FlagTruth truth;
   std::size_t first, second;  ///< places in the assessments of each record
   std::int64_t loops = 0;
-  McNemarTest test;     ///< lost: right by the first alone
+  McNemarTest test;     ///< lost: only the first is right
   double p_holm = 1.0;  ///< test.p_two_sided corrected for all pairs of this truth that have loops
 };
 
-/// Every pair once for each truth, all of the first truth first. `study` must outlive the collector.
+/// Collects every pair once for each truth, all pairs of the first truth first. `study` must outlive the
+/// collector.
 Collector<std::vector<MethodPair>> pair_collector(const Study& study, std::size_t methods);
 
 }  // namespace mpm

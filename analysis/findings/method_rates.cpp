@@ -24,10 +24,11 @@ struct LoopMeasures {
   WorldMean repair_gain_share, repair_gain_share_05;
   std::int64_t false_alarms = 0, verdicts_before = 0;
   std::vector<double> delays;
-  /// Of the loops with a fault that has an impact, or none, and of the healthy ones.
+  /// Scores of the loops with a fault that has an impact, with a fault that has none, and of the healthy
+  /// loops.
   std::vector<double> impact_scores, no_impact_scores, healthy_scores;
   std::vector<double> milliseconds, channels_named, size_errors;
-  std::vector<EffectTrial> effects;  ///< of the faults, and whether they are above the threshold for 5 %
+  std::vector<EffectTrial> effects;  ///< of the faults, and whether the score is above the threshold for 5 %
   WorldMean log_score, brier_score;
   Reliability reliability;
 };
@@ -42,7 +43,7 @@ struct SeenLoop {
   const CalibratedThresholds& thresholds;
   FaultTruth truth = truth_of(study, record);
   Judgement judgement = said.answered() && truth.faulty() ? judge(study, record, said) : Judgement{};
-  /// In a study that monitors, with a verdict, of a loop without bad tuning.
+  /// Set in a study that monitors, if the loop has a verdict and no bad tuning.
   std::optional<MonitoredLoop> windows = {};
 
   SeenLoop(const Study& of_study, const ExperimentRecord& of_record, const AssessmentRecord& of_method,
@@ -52,11 +53,11 @@ struct SeenLoop {
       windows = monitored_loop(study, record, said);
   }
 
-  /// From the onset of a fault with an impact to the first flagged window; NaN without such a fault.
+  /// Time from the onset of a fault with an impact to the first flagged window; NaN without such a fault.
   double delay() const { return windows && truth.impact ? windows->delay : kNaN; }
 
   LoopOutcome outcome() const;
-  /// Adds what it measures.
+  /// Adds the values of this loop to `all`.
   void measure(LoopMeasures& all) const;
 
  private:
@@ -101,7 +102,7 @@ void SeenLoop::measure(LoopMeasures& all) const {
     measure_repair(all);
   if (!said.answered())
     return;
-  if (!std::isnan(said.milliseconds))  // it would break the order for the median
+  if (!std::isnan(said.milliseconds))  // NaN would break the order for the median
     all.milliseconds.push_back(said.milliseconds);
   if (windows) {
     all.false_alarms += windows->false_alarms;
@@ -121,7 +122,7 @@ void SeenLoop::measure(LoopMeasures& all) const {
     all.healthy_scores.push_back(said.score);
 }
 
-/// How much of the best repair's gain the channel that it names brings.
+/// Adds the share of the best repair's gain that a repair of the named channel brings.
 void SeenLoop::measure_repair(LoopMeasures& all) const {
   const MethodDescription& method = said.form->method();
   if (!(method.names_channels || method.names_mismatches) || !truth.impact || !record.repair.best())
@@ -145,7 +146,7 @@ void SeenLoop::measure_fault(LoopMeasures& all) const {
     all.size_errors.push_back(judgement.size_error);
 }
 
-/// A window watches the time from the one before it.
+/// Each window counts for the time since the window before it, which is one stride.
 Estimate alarms_a_day(const Study& study, const LoopMeasures& counts) {
   const std::optional<double> days = days_in(study.plant.time_unit);
   if (!study.monitoring || !days)

@@ -18,21 +18,21 @@
 
 namespace mpm {
 
-/// How often a method was asked and failed (AssessmentStatus::failed). A loop to which it does not apply asks
-/// nothing of it.
+/// How often a method was asked for a verdict and failed (AssessmentStatus::failed). A method is not asked on
+/// a loop to which it does not apply.
 struct VerdictFailures {
   std::int64_t failed = 0;
-  std::int64_t asked = 0;   ///< loops with a verdict, and these
-  std::string reason = {};  ///< of the first one; empty: none
+  std::int64_t asked = 0;   ///< loops with a verdict, and the failed ones
+  std::string reason = {};  ///< of the first failure; empty: no failure
 
   void add(const AssessmentRecord& said);
   void add(const VerdictFailures& more);
 };
 
-/// The measured values of the loops that a method has assessed, from which its estimates are made.
+/// The measured values of the loops that a method has assessed, from which its estimates are computed.
 struct LoopMeasures;
 
-/// A number of a method that is no share of loops.
+/// A number of a method that is not a share of loops.
 struct EstimateRow : MethodNumber {
   Estimate (*estimate)(const LoopMeasures&, const Study&);
   bool has_interval = true;
@@ -45,34 +45,33 @@ struct Estimates : RowValues<EstimateRow, Estimate> {
   Estimates() : RowValues(estimate_rows()) {}
 };
 
-/// How often one method is right. A loop without a verdict counts only where the meaning of a rate says so.
+/// How often one method is right. A loop without a verdict counts only if the meaning of a rate says so.
 struct MethodRates {
-  std::string
-      reason;  ///< why there was no verdict on the first loop without one; empty when it always gave one
+  std::string reason;          ///< why the first loop without a verdict has none; empty: all have one
   LoopOutcomes outcomes = {};  ///< of the records, in their order
   VerdictFailures failures = {};
   Rates rates = Rates();
   Estimates estimates = {};
-  Reliability reliability = {};  ///< of the probabilities that it states, if it does
+  Reliability reliability = {};  ///< of the probabilities that it states, if it states any
   CalibratedThresholds thresholds = {};
-  RocCurve roc = {};       ///< of the score, loops with a fault against healthy ones
+  RocCurve roc = {};       ///< of the score: loops with a fault against healthy loops
   Interval roc_area = {};  ///< of roc.area; NaN when there is no curve
-  /// Loops with a fault that has an impact against those with another one and healthy ones.
+  /// Of the score: loops with a fault that has an impact against all other loops, except badly tuned ones.
   RocCurve roc_impact = {};
   Interval roc_impact_area = {};
-  double milliseconds = kNaN;  ///< median processor time a loop, of those answered; NaN without
+  double milliseconds = kNaN;  ///< median processor time per loop with a verdict; NaN: no such loop
 
   Rate& operator[](std::string_view rate) { return rates[rate]; }
   const Rate& operator[](std::string_view rate) const { return rates[rate]; }
 };
 
-/// A calibrated threshold; its meaning says the share of which loops is above it at most.
+/// A calibrated threshold. Its meaning says at most which share of which loops is above it.
 struct ThresholdRow : MethodNumber {
   CalibratedThreshold CalibratedThresholds::*threshold;
 };
 std::span<const ThresholdRow> threshold_rows();
 
-/// The area under the curve of the scores against one truth.
+/// The area under the ROC curve of the scores against one truth.
 struct AreaRow : MethodNumber {
   RocCurve MethodRates::*curve;
   Interval MethodRates::*interval;
@@ -84,25 +83,26 @@ inline constexpr MethodNumber kRunTime{"milliseconds", "ms a loop",
 
 /// Every number of a method once.
 std::vector<MethodNumber> method_numbers();
-/// The one of this name; throws std::out_of_range when there is none.
+/// The number of this name; throws std::out_of_range if there is none.
 MethodNumber method_number(std::string_view name);
-/// Its heading.
+/// The heading of the number of this name.
 std::string heading_of(std::string_view name);
 
-/// The rates of one method; `method` is its place in the assessments of each record and of each loop of
-/// `calibration`, which may have none. `study` must outlive the collector.
+/// Collects the rates of one method. `method` is its place in the assessments of each record and in the
+/// scores of each loop of `calibration`, which may have no loops. `study` must outlive the collector.
 Collector<MethodRates> rate_collector(const Study& study, std::size_t method,
                                       const Calibration& calibration = {});
 
-/// The parts of the study on which the method gave no verdict at all, each with the rates that cannot be had
-/// without: {"calibration", "no verdict on a calibration loop: no rate at a calibrated threshold"}.
+/// A part of the study on which the method gave no verdict at all, and the numbers that are missing as a
+/// result: {"calibration", "no verdict on any calibration loop, so no rate at a calibrated threshold"}.
 struct UnansweredPart {
   const char* name;    ///< "calibration", "windows"
   const char* reason;  ///< for people
 };
 std::vector<UnansweredPart> unanswered_parts(const Study& study, const MethodRates& rates);
 
-/// Of the loops: with a verdict on fewer, a method is not judged on the same loops as the others.
+/// The least share of loops with a verdict: with a smaller one, a method is not judged on the same loops as
+/// the others.
 inline constexpr double kFewestAnswers = 0.9;
 
 /// Whether this method may be called the best at something: it gives a verdict on nearly all loops
@@ -118,15 +118,15 @@ Finding method_finding(const std::string& method, const std::string& name, const
 /// The row "compare.METHOD.NAME" of this number, without a value; `prefix` stands before the name.
 Finding method_finding(const std::string& method, const MethodNumber& number, const std::string& prefix = "");
 
-/// Its rows: of each rate that the study can have, of the areas, the estimates, and in a study with a
-/// calibration the thresholds.
+/// Returns the rows of a method: the rates that the study can have, the areas, the estimates that the study
+/// can have and, in a study with a calibration, the thresholds.
 std::vector<Finding> rows_of(const Study& study, const MethodRates& rates, const MethodDescription& method);
 
 /// How the false alarms of a method agree with the rate that it states.
 enum class FalseAlarmMark : std::int8_t {
-  none,   ///< they do, or no healthy loop has a verdict
-  fewer,  ///< the interval of the rate of the healthy loops that it flags lies below
-  more,   ///< it lies above
+  none,   ///< they agree, or no healthy loop has a verdict
+  fewer,  ///< the interval of its share of flagged healthy loops lies below the stated rate
+  more,   ///< the interval lies above the stated rate
 };
 
 template <>

@@ -15,18 +15,18 @@ namespace mpm {
 /// and any window of a loop without a fault, is fault-free. An alarm begins where a flagged window follows
 /// one that is not flagged, so an alarm that lasts over several windows counts once.
 struct MonitoredLoop {
-  std::int64_t verdicts_before = 0;  ///< windows with a verdict and nothing to find
-  std::int64_t false_alarms = 0;     ///< alarms that begin in them
+  std::int64_t verdicts_before = 0;  ///< fault-free windows with a verdict
+  std::int64_t false_alarms = 0;     ///< alarms that begin in fault-free windows
   /// Time from the onset to the end of the first flagged window that ends after it, in the time unit of the
-  /// plant; infinite when there is none, NaN without a fault, or without a verdict on any of these windows.
+  /// plant; infinite if none is flagged, NaN without a fault, or if none of these windows has a verdict.
   double delay = kNaN;
 };
 
-/// The windows of a loop on which the method has a verdict, in a study that monitors.
+/// Evaluates the windows of a loop on which the method has a verdict. The study must monitor.
 MonitoredLoop monitored_loop(const Study& study, const ExperimentRecord& record,
                              const AssessmentRecord& assessment);
 
-/// Days in a time unit: "s", "min", "h" or "d"; none for other units.
+/// The length of a time unit in days, for "s", "min", "h" and "d"; none for other units.
 std::optional<double> days_in(std::string_view time_unit);
 
 }  // namespace mpm

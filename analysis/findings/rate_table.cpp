@@ -16,7 +16,7 @@ constexpr bool is_right(Correctness verdict) {
   return verdict == Correctness::right;
 }
 
-/// One of the loops of the questions at equal false alarms.
+/// Whether the questions at equal false alarms are asked about this loop.
 constexpr bool is_asked(const JudgedLoop& l) {
   return l.scope.in_worlds && l.scope.at_05 && l.truth.impact;
 }

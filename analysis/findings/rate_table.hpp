@@ -17,12 +17,12 @@
 #include "analysis/statistics/interval.hpp"
 #include "scenarios/study/study.hpp"
 
-// The numbers by which methods are compared, each a row: text, JSON, archive, report, board, gates and the
-// Python package iterate over the rows, and have their names and headings from them.
+// The numbers by which methods are compared. Each number is a row. Text, JSON, archive, report, board, gates
+// and the Python package iterate over the rows and take names and headings from them.
 
 namespace mpm {
 
-/// Which studies have a number.
+/// What a study needs to have a number.
 enum class StudyFeature : std::int8_t {
   any,
   candidates,
@@ -45,10 +45,10 @@ struct MethodNumber {
 
 /// A rate: a share of loops.
 struct RateRow : MethodNumber {
-  bool (*counts)(const JudgedLoop&);  ///< is the loop one of those that it is a share of?
-  bool (*hit)(const JudgedLoop&);     ///< is it one of the share? Asked only of loops that count
+  bool (*counts)(const JudgedLoop&);  ///< whether the loop counts for the rate
+  bool (*hit)(const JudgedLoop&);     ///< whether the loop is a hit; asked only of loops that count
 
-  /// None: the loop does not count.
+  /// Whether the loop is a hit; none if it does not count.
   std::optional<bool> ask(const JudgedLoop& loop) const {
     return counts(loop) ? std::optional(hit(loop)) : std::nullopt;
   }
@@ -67,7 +67,7 @@ const Row& row_of(std::span<const Row> rows, std::string_view name) {
   return *found;
 }
 
-/// Those that this study can have.
+/// Returns the rows that this study can have.
 template <class Row>
 std::vector<std::reference_wrapper<const Row>> rows_for(const Study& study, std::span<const Row> rows) {
   std::vector<std::reference_wrapper<const Row>> found;
@@ -77,7 +77,7 @@ std::vector<std::reference_wrapper<const Row>> rows_for(const Study& study, std:
   return found;
 }
 
-/// A value for each of these rows, which must outlive it.
+/// A value for each of some rows. The rows must outlive it.
 template <class Row, class Value>
 class RowValues {
  public:
@@ -102,15 +102,16 @@ struct Rates : RowValues<RateRow, Rate> {
 /// What a rate would be under each of the redrawn thresholds (CalibratedThresholds::redrawn_05).
 class RedrawnShare {
  public:
-  /// A loop that counts: a hit below the threshold, above it, and how many of the thresholds it exceeds.
+  /// Adds a loop that counts: whether it is a hit if its score is below the threshold, whether it is a hit if
+  /// its score is above, and how many of the redrawn thresholds its score exceeds.
   void add(bool below, bool above, int exceeded);
-  /// Of the share between thresholds, (sum of squares about the mean) / (kRedraws - 1); 0 where no threshold
-  /// matters.
+  /// The variance of the share over the redrawn thresholds, (sum of squares about the mean) / (kRedraws - 1);
+  /// 0 if the thresholds do not change the share.
   double variance() const;
 
  private:
   std::int64_t below_ = 0, total_ = 0;
-  std::array<std::int64_t, kRedraws + 1> changes_ = {};  ///< above minus below, by the thresholds exceeded
+  std::array<std::int64_t, kRedraws + 1> changes_ = {};  ///< sum of above - below, by thresholds exceeded
 };
 
 /// Counts the loops of each rate, by world.

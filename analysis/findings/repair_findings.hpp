@@ -15,7 +15,7 @@ namespace mpm {
 /// Which channel was repaired.
 enum class RepairTarget : std::int8_t {
   mismatched,   ///< one with a mismatch
-  another,      ///< one without, of a plant that has a mismatch
+  another,      ///< one without a mismatch, of a plant that has a mismatch elsewhere
   no_mismatch,  ///< a channel of a plant without a mismatch: with a disturbance, or no fault
 };
 
@@ -23,17 +23,17 @@ template <>
 inline constexpr auto kWords<RepairTarget> = word_list("a mismatched channel", "another channel",
                                                        "no mismatch");
 
-/// The result of the repair of one experiment; its loops must be comparable.
+/// The result of the repair of one experiment, whose loops must be comparable (RepairedLoop::compares()).
 struct RepairOutcome {
   std::int64_t index;
   RepairTarget target;
-  double loss_now, loss_repaired;  ///< RepairedLoop
+  double loss_now, loss_repaired;  ///< as in RepairedLoop
 };
 
 RepairTarget target_of(const ExperimentDraw& draw, const Channel& channel);
 
-/// The outcomes of one sort together; a loop is better or worse where its loss changes by more than
-/// kNoticeableChange.
+/// The outcomes for one target together. A loop is better or worse if its loss changes by more than the
+/// factor kNoticeableChange.
 struct RepairFindings {
   RepairTarget target;
   Rate better, worse;

@@ -24,7 +24,7 @@ bool same_variables(const PlantModel& a, const PlantModel& b) {
          names_of(a.mds) == names_of(b.mds);
 }
 
-/// Is the same wrong, of the same size?
+/// Whether both experiments have the same fault, of the same size.
 bool same_fault(const ExperimentDraw& a, const ExperimentDraw& b) {
   return a.kind == b.kind && a.mismatches == b.mismatches && a.disturbances == b.disturbances &&
          a.named == b.named && a.affected_cvs == b.affected_cvs && a.parameters == b.parameters &&
@@ -32,7 +32,7 @@ bool same_fault(const ExperimentDraw& a, const ExperimentDraw& b) {
          a.noise_factor == b.noise_factor;
 }
 
-/// As numbers in a file are the same: a NaN is itself.
+/// Whether two numbers are the same as they are in a file, where a NaN equals a NaN.
 bool same_number(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
@@ -42,7 +42,7 @@ bool same_loop(const ExperimentRecord& a, const ExperimentRecord& b) {
                                             b.ivar_basis.end(), same_number);
 }
 
-/// What keeps runs from being paired, whatever their experiments are.
+/// Returns what keeps the runs from being paired, whatever their experiments are; empty: nothing.
 std::string obstacle_of(const Study& before, const Study& now) {
   if (!same_variables(before.plant, now.plant))
     return "the plants have different variables";
@@ -102,8 +102,8 @@ struct MethodRun {
   Collector<MethodRates> rates() const { return rate_collector(run.study, place, run.calibration); }
 };
 
-/// Counts the loops of paired runs. The rate of a single loop is 0 of 0, 0 of 1 or 1 of 1: what it adds to
-/// that of all.
+/// Counts the loops of paired runs. The rate of a single loop is 0 of 0, 0 of 1 or 1 of 1, which is what the
+/// loop adds to the rate of all loops.
 class PairedRates {
  public:
   void add(int world, const MethodRates& before, const MethodRates& now) {
@@ -145,7 +145,7 @@ std::vector<RateChange> unpaired_rates(const MethodRates& before, const MethodRa
   return changes;
 }
 
-/// Those that something was counted for, with corrected p-values.
+/// Keeps the changes of rates that count a loop in at least one run, and corrects their p-values.
 std::vector<RateChange> corrected(std::vector<RateChange> changes) {
   std::erase_if(changes,
                 [](const RateChange& change) { return change.before.total == 0 && change.now.total == 0; });
@@ -162,7 +162,7 @@ std::vector<RateChange> corrected(std::vector<RateChange> changes) {
 
 // --- Verdicts ---
 
-/// Asks a method that both runs have every question, of one paired experiment after the other.
+/// Asks every question about a method that both runs have, one paired experiment after the other.
 class VerdictComparison {
  public:
   VerdictComparison(const MethodRun& before, const MethodRun& now) : before_(before), now_(now) {
@@ -178,7 +178,7 @@ class VerdictComparison {
           now.draw.world);
   }
 
-  /// Those that were judged.
+  /// Returns the questions that were judged.
   std::vector<VerdictChange> finish() && {
     std::erase_if(verdicts_, [](const VerdictChange& verdict) { return verdict.changes.pairs == 0; });
     return std::move(verdicts_);
@@ -196,7 +196,7 @@ class NumberCollection {
  public:
   explicit NumberCollection(std::string label) { change_.label = std::move(label); }
 
-  /// The values of one experiment in both runs.
+  /// Adds the values of one experiment in both runs.
   void add(std::int64_t index, const Eigen::MatrixXd& before, const Eigen::MatrixXd& now) {
     if (before.size() == 0 || before.rows() != now.rows() || before.cols() != now.cols())
       return;
@@ -274,7 +274,7 @@ class NumberChanges {
   std::vector<NumberCollection> collections_{NumberCollection("score")};
 };
 
-/// A method that both runs have, as their experiments come one after the other.
+/// Compares a method that both runs have, one experiment after the other.
 class MethodComparison {
  public:
   MethodComparison(const MethodRun& before, const MethodRun& now)
@@ -285,7 +285,7 @@ class MethodComparison {
         rates_before_(before.rates()),
         rates_now_(now.rates()) {}
 
-  /// An experiment that both have; only of paired runs.
+  /// Adds an experiment that both runs have; only for paired runs.
   void add_pair(const ExperimentRecord& before, const ExperimentRecord& now) {
     rates_.add(now.draw.world, before_.rates().of(std::span(&before, 1)),
                now_.rates().of(std::span(&now, 1)));
@@ -293,7 +293,7 @@ class MethodComparison {
     numbers_.add(now.draw.index, before_.said(before), now_.said(now));
   }
 
-  /// An experiment of either; only of runs that are not paired.
+  /// Adds an experiment of one of the runs; only for runs that are not paired.
   void add_before(const ExperimentRecord& record) { rates_before_.add(record); }
   void add_now(const ExperimentRecord& record) { rates_now_.add(record); }
 
@@ -318,7 +318,7 @@ class MethodComparison {
   Collector<MethodRates> rates_before_, rates_now_;
 };
 
-/// Every method that both have, once in each, in the order of the second.
+/// Returns every method that both runs have, with its place in each, in the order of the second run.
 std::vector<std::pair<MethodRun, MethodRun>> methods_in_both(const StudyRun& before, const StudyRun& now) {
   std::vector<std::pair<MethodRun, MethodRun>> methods;
   for (std::size_t place = 0; place < now.forms.size(); ++place)

@@ -26,12 +26,12 @@ struct StudyRun {
   const Calibration& calibration;
 };
 
-/// Which experiments of two runs are the same. Runs are paired when seed and variables of the studies are the
-/// same, they have experiments in common, and in each of these the same is wrong.
+/// Whether two runs are paired, and over which experiments. They are paired if the seed and the variables of
+/// the studies are the same, and if they have experiments in common, each with the same fault in both runs.
 struct RunPairing {
   std::string obstacle = {};    ///< why the runs are not paired, as a clause; empty: they are
-  std::int64_t loops = 0;       ///< experiments in common; none when not paired
-  std::int64_t same_loops = 0;  ///< of these: the same end and the same Ivar_basis, bit for bit
+  std::int64_t loops = 0;       ///< experiments in common; 0 if not paired
+  std::int64_t same_loops = 0;  ///< of these: with the same end and the same Ivar_basis, bit for bit
 
   bool paired() const { return obstacle.empty(); }
 };
@@ -41,13 +41,13 @@ RunPairing pair_runs(const StudyRun& before, const StudyRun& now);
 /// How a rate of a method changed. For paired runs only the common loops count.
 struct RateChange {
   const RateRow* row;
-  Rate before, now;            ///< each over all loops that it counts in this run
+  Rate before, now;            ///< each over all loops that it counts in that run
   PairedCounts counts;         ///< of paired runs: over the loops that it counts in both
-  ShareDifference difference;  ///< over these; of unpaired runs: of `before` and `now` as independent
+  ShareDifference difference;  ///< of paired runs: of `counts`; else of `before` and `now`, as independent
   double p_holm = 1.0;         ///< difference.p corrected for all rates of the method; NaN where p is
 };
 
-/// One question to an answer that may come to something else in the other run.
+/// One question about an answer. Its result may differ between the two runs.
 struct VerdictQuestion {
   const char* key;      ///< in names of gates: "flag_impact"
   const char* name;     ///< for people: "flag, impact"
@@ -65,30 +65,30 @@ struct VerdictChange {
   double p_holm = 1.0;  ///< two-sided, corrected for all questions of all methods
 };
 
-/// How a number changed over paired loops that have it in both runs. A number of CVs is the mean of an
-/// experiment's CVs, for these are no independent samples.
+/// How a number changed over paired loops that have it in both runs. A number that each CV has is averaged
+/// over the CVs of an experiment, because they are not independent samples.
 struct NumberChange {
   std::string label;  ///< with the marks of plot labels: "I_{MPM}"
   std::int64_t experiments = 0;
-  std::int64_t same = 0;     ///< experiments in which nothing of it changed
+  std::int64_t same = 0;     ///< experiments in which none of its values changed
   SampleSummary difference;  ///< now - before, over experiments
-  double largest = 0.0;      ///< change of a single value by absolute value, with its sign
+  double largest = 0.0;      ///< the change of a single value that is largest in magnitude, with its sign
   std::int64_t index = -1;   ///< the experiment with this change; -1: none changed
 };
 
 /// What changed of one method that both runs have.
 struct MethodChange {
   std::string name;
-  std::size_t before, now;              ///< its place in the assessments of each record
-  std::vector<RateChange> rates;        ///< those that a loop was counted for in some run
-  std::vector<VerdictChange> verdicts;  ///< those that were judged; empty for unpaired runs
+  std::size_t before, now;              ///< its places in the assessments of each record
+  std::vector<RateChange> rates;        ///< the rates that count a loop in at least one run
+  std::vector<VerdictChange> verdicts;  ///< the questions that were judged; empty for unpaired runs
   std::vector<NumberChange> numbers;    ///< empty for unpaired runs
 
-  /// Something of it changed in some paired loop.
+  /// Whether a verdict or a number of the method changed in some paired loop.
   bool changed() const;
 };
 
-/// All methods of both runs, in the order of the second. Goes through the records once.
+/// Compares all methods that both runs have, in the order of the second run. Goes through the records once.
 std::vector<MethodChange> method_changes(const StudyRun& before, const StudyRun& now,
                                          const RunPairing& pairing);
 

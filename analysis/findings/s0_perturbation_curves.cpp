@@ -59,7 +59,7 @@ S0Change change(const Study& study, const std::vector<const Ratios*>& experiment
         continue;
       any = true;
       inside = inside && ratio >= study.diagnosis.impact_lower && ratio <= study.diagnosis.impact_upper;
-      result.largest = std::fmax(result.largest, std::abs(ratio - 1.0));  // passes over the NaN at the start
+      result.largest = std::fmax(result.largest, std::abs(ratio - 1.0));  // ignores the NaN at the start
     }
     judged += any ? 1 : 0;
     within += any && inside ? 1 : 0;
@@ -68,7 +68,7 @@ S0Change change(const Study& study, const std::vector<const Ratios*>& experiment
   return result;
 }
 
-/// The experiments that are looked at.
+/// The experiments for which is_looked_at() holds.
 class PerturbedExperiments {
  public:
   explicit PerturbedExperiments(const Study& study) : study_(study) {}
@@ -83,7 +83,7 @@ class PerturbedExperiments {
   }
 
  protected:
-  /// Those whose affected CV is `cv`; of all CVs without one.
+  /// Returns the experiments whose affected CV is `cv`; all experiments if `cv` is none.
   std::vector<const Ratios*> of(std::optional<Eigen::Index> cv) const {
     std::vector<const Ratios*> chosen;
     for (const Ratios& experiment : all_)

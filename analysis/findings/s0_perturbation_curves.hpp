@@ -28,13 +28,12 @@ struct S0Change {
 struct S0Curve {
   Eigen::Index cv;
   std::int64_t experiments = 0;
-  std::vector<RatioSpread> time_constant, damping;  ///< one a multiplier of the study
+  std::vector<RatioSpread> time_constant, damping;  ///< one per multiplier of the study
   S0Change time_constant_change, damping_change;
 };
 
-/// The curves of the CVs with such experiments, in the order of the CVs. Ratios that are not finite are left
-/// out.
-/// `study` must outlive the collector.
+/// Collects the curves of the CVs that have such experiments, in the order of the CVs. Leaves out ratios that
+/// are not finite. `study` must outlive the collector.
 Collector<std::vector<S0Curve>> s0_curve_collector(const Study& study);
 
 /// The same change over the experiments of all CVs.

@@ -5,7 +5,7 @@
 namespace mpm {
 namespace {
 
-/// From `mpm` on, answers are sources in the same order.
+/// Returns the answer that names this source. From `mpm` on, the answers have the order of the sources.
 AnsweredSource answer_naming(ToldSource source) {
   constexpr int kFirst = static_cast<int>(AnsweredSource::mpm) - static_cast<int>(ToldSource::mpm);
   return static_cast<AnsweredSource>(static_cast<int>(source) + kFirst);

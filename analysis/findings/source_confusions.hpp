@@ -30,11 +30,11 @@ inline constexpr auto kWords<AnsweredSource> = word_list("no_answer", "none", "u
                                                          "mpm_ud", "other", "sensor", "valve", "data");
 
 AnsweredSource answered_source(const LoopOutcome& said);
-/// The answer that is this truth.
+/// Returns the answer that is right for this truth.
 AnsweredSource right_answer(ToldSource truth);
 
-/// The number of loops of each truth (row) with each answer (column): their sum is that of the loops. Bad
-/// tuning is the truth `none`.
+/// The number of loops with each truth (row) and each answer (column). They add up to the number of loops.
+/// Bad tuning has the truth `none`.
 class SourceConfusions {
  public:
   void add(const FaultTruth& truth, const LoopOutcome& said) { ++at(truth.source(), answered_source(said)); }

@@ -12,7 +12,8 @@ bool any_cell(const CellScores&) {
   return true;
 }
 
-/// Calls visit(truth) for each loop of these cells, or each on which the method gives a verdict.
+/// Calls visit(truth) for each loop of the cells for which `of` is true; with a `method`, only for the loops
+/// on which it gives a verdict.
 void each_truth(const Leaderboard& board, const std::function<bool(const CellScores&)>& of,
                 std::optional<std::size_t> method, const std::function<void(FaultSource)>& visit) {
   for (const CellScores& cell : board.cells) {

@@ -39,7 +39,7 @@ std::vector<Finding> rows_of(const std::string& parameter, const char* words, co
           within.with(change.within_band)};
 }
 
-/// What the chain shows of all kinds together, and of the loops without a fault.
+/// Adds the findings of the chain over all kinds together, and over the loops without a fault.
 void add_together(const Study& study, StudyFindings& findings) {
   const double confidence = study.aggregate.confidence;
   findings.right_scenarios = rate(findings.right_scenarios.hits, findings.right_scenarios.total, confidence);
@@ -57,7 +57,7 @@ void add_together(const Study& study, StudyFindings& findings) {
   findings.false_alarm = rate(hits, total, confidence);
 }
 
-/// Their rows.
+/// Returns the rows of the findings of add_together().
 std::vector<Finding> together_rows(const Study& study, const StudyFindings& findings) {
   std::vector<Finding> rows;
   const auto add = [&](const char* name, const char* label, const char* meaning, const Rate& found) {
@@ -81,7 +81,7 @@ std::vector<Finding> together_rows(const Study& study, const StudyFindings& find
   return rows;
 }
 
-/// The rows of the chain have no prefix: they are what the thesis reports.
+/// Returns all rows. The names of the chain's rows have no prefix, because the thesis reports these numbers.
 std::vector<Finding> all_rows(const Study& study, const StudyFindings& findings) {
   const Finding infeasible{.name = "infeasible",
                            .label = "infeasible",

@@ -17,7 +17,8 @@ bool has_answer(const ExperimentRecord& record, std::size_t method) {
   return record.status == ExperimentStatus::ok && record.assessments[method].answered();
 }
 
-/// Of one loop alone there is no other half: it counts against itself.
+/// Returns the threshold of each half. A single loop has no other half, so it is compared with its own
+/// threshold.
 std::array<double, 2> thresholds_of_halves(const std::vector<double>& scores) {
   std::array<std::vector<double>, 2> halves;
   for (std::size_t place = 0; place < scores.size(); ++place)

@@ -9,13 +9,13 @@
 
 namespace mpm {
 
-/// Counts of one kind, one for each world: the loops of a world share its errors of the model and its
-/// benchmark. A study without worlds has all loops in one.
+/// Counts of one type, one for each world, because the loops of a world share its model errors and its
+/// benchmark. A study without worlds has all loops in one world.
 template <class Counts>
 class OfWorlds {
  public:
   Counts& of(int world) {
-    const auto place = static_cast<std::size_t>(std::int64_t{world} + 1);  // that of the exact world first
+    const auto place = static_cast<std::size_t>(std::int64_t{world} + 1);  // the exact world comes first
     if (place >= worlds_.size())
       worlds_.resize(place + 1);
     return worlds_[place];
