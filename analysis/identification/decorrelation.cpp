@@ -18,8 +18,8 @@ Eigen::MatrixXd about_means(const Eigen::Ref<const Eigen::MatrixXd>& signals) {
   return signals.colwise() - signals.rowwise().mean();
 }
 
-/// Q, with which Q Q'x is A b, where |x - A b|^2 + r^2 |b|^2 is least and r = kRankTolerance |A|: the upper
-/// rows of the orthogonal factor of (A; r I), so that no singular value is squared.
+/// Returns Q such that Q Q'x = A b, where b minimises |x - A b|^2 + r^2 |b|^2 with r = kRankTolerance |A|. Q
+/// is the upper rows of the orthogonal factor of (A; r I), so that no singular value is squared.
 Eigen::MatrixXd ridge_basis(const Eigen::MatrixXd& A) {
   const Eigen::Index rows = A.rows(), n = A.cols();
   Eigen::MatrixXd augmented = Eigen::MatrixXd::Zero(rows + n, n);

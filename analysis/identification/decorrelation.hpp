@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// The model by which a signal is freed of the effect of others.
+/// The model by which the effect of other signals is removed from a signal.
 enum class DecorrelationModel : std::int8_t {
   output_error = 0,  ///< output-error models by search (2.5), (2.6)
   fir = 1,           ///< regression on Laguerre filters, the finite impulse response for a pole of 0
@@ -20,11 +20,11 @@ struct DecorrelationOptions {
   /// Orders of B and F of each path of an output-error model.
   Eigen::Index nb = 2;
   Eigen::Index nf = 2;
-  /// Filters an input, one of them direct, of the regression.
+  /// Number of filters per input of the regression, including the direct one (L_0).
   Eigen::Index fir_length = 20;
   /// Pole of its Laguerre filters, in [0, 1).
   double fir_pole = 0.9;
-  /// How the output-error models are searched.
+  /// How the output-error models are searched for.
   PredictionErrorOptions search{StartState::held, 0, 60};
 
   /// @throws InputError for nb or fir_length below 1, nf below 0, a pole outside [0, 1) or invalid options of
@@ -36,12 +36,12 @@ struct DecorrelationOptions {
 /// What remains of signals when the effect of others is removed.
 struct Decorrelation {
   Eigen::MatrixXd residuals;    ///< m x N, about their means
-  Eigen::Index parameters = 0;  ///< fitted coefficients a signal
+  Eigen::Index parameters = 0;  ///< fitted coefficients per signal
   Eigen::Index unusable = 0;    ///< output-error models without a usable status (`is_usable`)
 };
 
-/// Frees signals of what these inputs explain. The residuals eps = x - V U of each signal x, in deviations
-/// from the means and from the steady state of the first sample, where V U is
+/// Removes from signals what the inputs explain. What remains are the residuals eps = x - V U of each signal
+/// x, in deviations from the means and from the steady state of the first sample, where V U is
 ///
 ///   output_error:  sum_j (B_j/F_j) u_j, B_j from lag `delay` on (2.5), (2.6)
 ///   fir:           c + sum_j sum_{i=0}^{n-1} h_ji L_i u_j,  L_0 = 1,
@@ -49,17 +49,17 @@ struct Decorrelation {
 ///
 /// Laguerre filters (Wahlberg 1991) reach as far back as a long impulse response with few coefficients; a = 0
 /// gives L_i = q^-i. Filtered inputs are nearly dependent, with singular values of all sizes, so the last
-/// bits decide which columns a pivoted factorisation takes. The regression is therefore a ridge
-/// regression, on filtered inputs of norm 1, that leaves a direction with singular value s by the share
-/// r^2/(s^2 + r^2), r = 1e-10 of the norm of them all: the orthogonal projection, except for directions that
-/// are rounding. Without inputs the residuals are the deviations from the means. The model of a search
-/// without a usable status serves as it is: its residuals are those of a stable model, though perhaps not of
-/// the best one; they are counted.
+/// bits would decide which columns a pivoted factorisation takes. The regression is therefore a ridge
+/// regression on filtered inputs of norm 1. Of a direction with singular value s it leaves the share
+/// r^2/(s^2 + r^2), where r is 1e-10 of the norm of all filtered inputs. This is the orthogonal projection,
+/// except for directions that are rounding errors. Without inputs the residuals are the deviations from the
+/// means. If a search ends without a usable status, its model is used as it is: the residuals are those of a
+/// stable model, though perhaps not of the best one. Decorrelation::unusable counts these models.
 ///
 /// | symbol | name    | shape | meaning                          |
 /// |--------|---------|-------|----------------------------------|
-/// | x      | signals | m x N | signals to be freed              |
-/// | u      | inputs  | n x N | what they are freed of           |
+/// | x      | signals | m x N | signals to be explained          |
+/// | u      | inputs  | n x N | signals that explain them        |
 ///
 /// All throw InputError for different lengths, values that are not finite, no more samples than coefficients,
 /// or invalid options.
@@ -67,7 +67,7 @@ class Decorrelator {
  public:
   Decorrelator(const Eigen::Ref<const Eigen::MatrixXd>& inputs, const DecorrelationOptions& options);
 
-  /// The regression takes little time after the first signals.
+  /// The regression takes little time, because the constructor has factorised the regressors.
   Decorrelation decorrelate(const Eigen::Ref<const Eigen::MatrixXd>& signals, Eigen::Index delay) const;
 
  private:

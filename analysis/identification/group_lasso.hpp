@@ -18,8 +18,8 @@ struct GroupLassoOptions {
 ///   min over b of  1/2 b'C b - c'b + sum_j lambda_j |b_j|,    C = Q'Q, c = Q'r
 ///
 /// for groups of columns of Q that are orthonormal within each group (C_jj = I). Each step is then exact,
-/// b_j = (1 - lambda_j/|g_j|)_+ g_j with g_j = c_j - sum_(l != j) C_jl b_l, and costs nothing of the length
-/// of the record. A group j enters at first where |c_j| = lambda_j.
+/// b_j = (1 - lambda_j/|g_j|)_+ g_j with g_j = c_j - sum_(l != j) C_jl b_l, and its cost does not depend on
+/// the length of the record. As the penalties fall, the first group j enters at |c_j| = lambda_j.
 ///
 /// | symbol | name    | shape | meaning                                  |
 /// |--------|---------|-------|------------------------------------------|

@@ -17,13 +17,13 @@ enum class IdentificationStatus : std::int8_t {
                            ///< on others, or orders that are too high
   not_converged = 2,       ///< the search ended where the gradient of the loss is not small
   at_stability_limit = 3,  ///< the search ended with a root of C, D or F at the largest radius allowed
-  noise_free = 4,  ///< nothing above rounding is left for C and D to describe: they are 1. With orders
-                   ///< above those of the data the coefficients are not determined, and there is no
-                   ///< covariance; the response is, of one input from rest
+  noise_free = 4,  ///< nothing above rounding is left for C and D to describe: they are 1. If the orders are
+                   ///< above those of the data, the coefficients are not determined and there is no
+                   ///< covariance, but the response to one input from rest is determined
 };
 
-/// Whether the response to the inputs is an answer: ok, noise_free, and at_stability_limit, which is one with
-/// less certainty (the covariance does not hold at a limit).
+/// Whether the response to the inputs can be used: yes for ok, noise_free and at_stability_limit. The last is
+/// less certain, because the covariance does not hold at a limit.
 bool is_usable(IdentificationStatus status);
 
 template <>
@@ -69,7 +69,7 @@ void require_identification_data(const Eigen::Ref<const Eigen::VectorXd>& y,
 ///   estimate that is not finite, of an unstable model, gives -infinity.
 double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y,
                    const Eigen::Ref<const Eigen::VectorXd>& y_est);
-/// The same from |y - y_est|^2, where this is known.
+/// The same from |y - y_est|^2, if this is known.
 double percent_fit(const Eigen::Ref<const Eigen::VectorXd>& y, double squared_error);
 
 }  // namespace mpm

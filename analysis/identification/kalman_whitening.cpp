@@ -12,12 +12,12 @@ namespace {
 
 /// Variances and gains of the filter, the same for every series: they depend on the models and on which
 /// samples are observed. With x^ the state given the samples up to k - 1 and P its variance, the innovation
-/// of an observed sample behind an observed one is
+/// of an observed sample after an observed one is
 ///
 ///   z(k) - phi z(k-1) - (a - phi) x^(k-1),   S = (a - phi)^2 P + b^2 + 1 - phi^2,
 ///
-/// and that of the first one or behind a gap is z(k) - a x^(k-1), S = a^2 P + b^2 + 1. The state goes on as
-/// x^(k) = a x^(k-1) + K innovation.
+/// and that of the first sample, or of a sample after a gap, is z(k) - a x^(k-1), S = a^2 P + b^2 + 1. The
+/// next state is x^(k) = a x^(k-1) + K innovation.
 class Gains {
  public:
   explicit Gains(const NoiseModels& models)
@@ -29,7 +29,7 @@ class Gains {
         determinant_(Eigen::ArrayXd::Ones(models.count())),
         log_determinant_(Eigen::ArrayXd::Zero(models.count())) {}
 
-  /// To the next sample; whether the sample before it counts in the innovation.
+  /// Goes on to an observed sample. Returns whether the sample before it counts in the innovation.
   bool observe() {
     const bool chained = models_.phi != 0.0 && previous_;
     if (!(settled_ && previous_))
@@ -42,13 +42,13 @@ class Gains {
     return chained;
   }
 
-  /// Over a sample that is not there.
+  /// Goes on over a missing sample.
   void skip() {
     P_ = predicted();
     previous_ = settled_ = first_ = false;
   }
 
-  /// Factor of the state in the innovation, and of its prediction.
+  /// The factor of the state in the prediction of a sample, which the innovation subtracts.
   const Eigen::ArrayXd& state_factor(bool chained) const { return chained ? difference_ : models_.a; }
 
   Eigen::ArrayXd log_determinant() {
@@ -59,7 +59,7 @@ class Gains {
   Eigen::ArrayXd S, inverse_S, root_inverse_S, K;
 
  private:
-  static constexpr int kFactors = 16;  // of S <= 1e19 before the logarithm is taken
+  static constexpr int kFactors = 16;  // so many S <= 1e19 are multiplied before the logarithm is taken
 
   Eigen::ArrayXd predicted() const {
     if (first_ && !models_.starts_from_rest)
@@ -96,7 +96,7 @@ class Gains {
   int factors_ = 0;
 };
 
-/// Of one series, all models abreast.
+/// The products of one series, with all models side by side.
 WhitenedProducts squares_abreast(const NoiseModels& models,
                                  const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& z) {
   Gains gains(models);
@@ -115,7 +115,8 @@ WhitenedProducts squares_abreast(const NoiseModels& models,
   return {gains.log_determinant(), {squares}};
 }
 
-/// Of several series, model by model: all series abreast, and their products in blocks of samples.
+/// The products of several series, model by model: all series side by side, and their products in blocks of
+/// samples.
 WhitenedProducts products_of_rows(const NoiseModels& models,
                                   const Eigen::Ref<const Eigen::MatrixXd>& series) {
   const Eigen::Index p = series.rows();

@@ -82,8 +82,8 @@ double LagSums::sum_of_all(Eigen::Index a, Eigen::Index b, Eigen::Index lag) con
   return sums_[static_cast<std::size_t>(((8 * block + b % 8) * lags_ + lag) * 8 + a % 8)];
 }
 
-/// Half a group before a number of the second half is its partner in the same sample, half a group before one
-/// of the first half that of the sample before.
+/// In memory, the number half a group before that of a signal of the second half is its partner at the same
+/// sample. For a signal of the first half it is its partner at the sample before.
 double LagSums::sum_of_partners(Eigen::Index a, Eigen::Index b, Eigen::Index lag) const {
   const auto at = [&](Eigen::Index kind, Eigen::Index l, Eigen::Index lane) {
     return sums_[static_cast<std::size_t>(((2 * (a / 8) + kind) * lags_ + l) * 8 + lane % 8)];

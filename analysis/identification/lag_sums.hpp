@@ -8,27 +8,28 @@
 
 namespace mpm {
 
-/// Columns of a regression: signal `signal` delayed by `lag`, `lag` + 1, ..., `count` of them.
+/// `count` columns of a regression: signal `signal` delayed by `lag`, `lag` + 1, ...
 struct LaggedColumns {
   Eigen::Index signal, lag, count;
 };
 
 Eigen::Index column_count(const std::vector<LaggedColumns>& columns);
 
-/// The columns themselves, samples `first` and later.
+/// Returns the columns themselves, from sample `first` on.
 Eigen::MatrixXd lagged_matrix(const SignalBank& signals, const std::vector<LaggedColumns>& columns,
                               Eigen::Index first);
 
 /// Which signals of a bank are multiplied with each other.
 enum class LagPairs {
   all = 0,
-  partners = 1,  ///< each with itself and with that of the other half of its group of eight
+  partners = 1,  ///< each with itself and with its partner in the other half of its group of eight
 };
 
-/// The sums over the samples `first` and later of a(k) b(k - l) for signals a and b of a bank and few lags l,
-/// from which all products of shifted signals follow: that of two columns from that of the two before them,
-/// by two samples. Only the first `delayed` signals are delayed, that is have columns. The memory of the bank
-/// and `first` must together reach `largest_lag` samples back, and one more for partners.
+/// The sums of a(k) b(k - l) over the samples `first` and later, for signals a and b of a bank and a few lags
+/// l. All products of shifted signals follow from them: the product of two columns differs from that of the
+/// two columns before them by two samples. Only the first `delayed` signals are delayed, that is, have
+/// columns. The memory of the bank and `first` must together reach `largest_lag` samples back, and one more
+/// for LagPairs::partners.
 class LagSums {
  public:
   void compute(const SignalBank& signals, Eigen::Index delayed, Eigen::Index largest_lag, Eigen::Index first,

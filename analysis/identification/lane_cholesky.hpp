@@ -6,16 +6,16 @@
 
 namespace mpm {
 
-/// S = L L' of a positive definite matrix, by the kernels of the active-set method. Matrices of one size
-/// after another share its memory.
+/// The Cholesky factorisation S = L L' of a positive definite matrix, by the kernels of the active-set
+/// method. Successive matrices of the same size use the same memory.
 class LaneCholesky {
  public:
-  /// From the lower triangle of S.
+  /// Factorises S, given its lower triangle.
   /// @returns false when a pivot is not above `smallest` times its diagonal
   bool compute(const Eigen::Ref<const Eigen::MatrixXd>& S, double smallest);
   /// The least pivot: the square of the least element on the diagonal of L.
   double least_pivot() const;
-  /// x of S x = b.
+  /// Returns the x with S x = b.
   Eigen::VectorXd solve(const Eigen::Ref<const Eigen::VectorXd>& b);
 
  private:

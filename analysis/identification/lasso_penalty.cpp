@@ -18,7 +18,7 @@ constexpr int kFolds = 5;
 constexpr int kPenalties = 25;
 constexpr double kLeastPenalty = 1e-3;
 
-/// The groups of a regression side by side in orthonormal columns, as group_lasso() wants them.
+/// The groups of a regression side by side in orthonormal columns, as group_lasso() needs them.
 class OrthonormalGroups {
  public:
   OrthonormalGroups(const Eigen::Ref<const Eigen::VectorXd>& r, const std::vector<Eigen::MatrixXd>& groups) {
@@ -81,7 +81,7 @@ class OrthonormalGroups {
   Eigen::VectorXd product_;
 };
 
-/// The rows but those from `first` to before `last`.
+/// All rows except `first` ... `last` - 1.
 Eigen::MatrixXd rows_outside(const Eigen::Ref<const Eigen::MatrixXd>& all, Eigen::Index first,
                              Eigen::Index last) {
   Eigen::MatrixXd rows(all.rows() - (last - first), all.cols());

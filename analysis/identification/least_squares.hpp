@@ -4,7 +4,7 @@
 
 namespace mpm {
 
-/// Where nothing else is asked for: columns of unit norm that are this close to dependent count as dependent.
+/// The default tolerance: columns of unit norm that are this close to dependent count as dependent.
 inline constexpr double kRankTolerance = 1e-10;
 
 /// The answer to a linear least-squares problem.
@@ -17,7 +17,7 @@ struct LeastSquares {
 
 /// Minimises |A x - b| by orthogonal transformations of [A b], never by normal equations, which would square
 /// the condition number. The columns of A are scaled to unit norm first, so that the rank does not depend on
-/// units. It is read off the p x p triangle: a direction counts when its diagonal element in a pivoted
+/// units. The rank is read off the p x p triangle: a direction counts if its diagonal element in a pivoted
 /// factorisation is above `rank_tolerance` times the largest one. The cost is one unpivoted factorisation,
 /// 2 n p^2 operations.
 ///

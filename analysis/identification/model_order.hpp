@@ -20,7 +20,7 @@ struct PathOrder {
 /// Orders of a polynomial model of one output (analysis/identification/polynomial_model.hpp).
 struct ModelOrder {
   Eigen::Index na = 0;            ///< order of A
-  std::vector<PathOrder> inputs;  ///< one path an input
+  std::vector<PathOrder> inputs;  ///< one path per input
   Eigen::Index nc = 0;            ///< order of C
   Eigen::Index nd = 0;            ///< order of D
 

@@ -37,7 +37,7 @@ NestedLeastSquares::NestedLeastSquares(const Eigen::Ref<const Eigen::MatrixXd>& 
   for (Eigen::Index j = 0; j < A.cols(); ++j)
     if ((A.col(j).array() != 0.0).any())
       kept_.push_back(j);
-  // Factorised again without the dependent columns, since they take up a row of Q'B each.
+  // Factorises again without the dependent columns, because each of them takes up a row of Q'B.
   for (bool independent = false; !independent;) {
     norms_.resize(static_cast<Eigen::Index>(kept_.size()));
     for (Eigen::Index j = 0; j < norms_.size(); ++j)

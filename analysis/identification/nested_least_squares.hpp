@@ -9,10 +9,10 @@ namespace mpm {
 
 /// The least-squares problems min |A_m x - b| with the first m columns of one matrix, for every m and several
 /// right-hand sides, from a single factorisation A = Q R: the residual of the first m columns is the part of
-/// Q'b below row m. A list of model orders so costs no more than its largest one, 2 n p^2 operations.
+/// Q'b below row m. So a list of model orders costs no more than its largest order, 2 n p^2 operations.
 ///
-/// A column that depends on those before it adds nothing to their span and is left out: it is one whose
-/// distance from that span is at most `rank_tolerance` of its length.
+/// A column is left out if it depends on the columns before it: if its distance from their span is at most
+/// `rank_tolerance` of its length.
 ///
 /// | symbol | meaning                      | shape |
 /// |--------|------------------------------|-------|
@@ -20,7 +20,7 @@ namespace mpm {
 /// | B      | right-hand sides, a column each | n x q |
 class NestedLeastSquares {
  public:
-  /// @throws InputError when n <= p, B has other rows than A or the tolerance is outside (0, 1)
+  /// @throws InputError if n <= p, B and A have different numbers of rows, or the tolerance is outside (0, 1)
   NestedLeastSquares(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::MatrixXd>& B,
                      double rank_tolerance);
 

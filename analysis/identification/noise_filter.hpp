@@ -8,10 +8,10 @@
 
 namespace mpm {
 
-/// How noise is taken out of the signals before they are correlated (A1.2, step 1).
+/// How noise is removed from the signals before they are correlated (A1.2, step 1).
 enum class NoiseFilter : std::int8_t {
-  /// `external` where at least as many signals from outside move as there are MVs to be told apart, `none`
-  /// where fewer do.
+  /// `external` if at least as many signals from outside move as there are MVs to tell apart, `none` if fewer
+  /// do.
   automatic = 0,
   none = 1,
   moving_average = 2,  ///< the mean of the last n samples
@@ -19,10 +19,10 @@ enum class NoiseFilter : std::int8_t {
   external = 4,        ///< only the part of the MVs that setpoints and measured disturbances cause
 };
 
-/// Each row of a record (m x N) through the same filter of length n samples, from the steady state of the
-/// first column. The filters are linear and the same for all rows, so that e = Delta G u holds for the
-/// filtered signals as for the measured ones. `external` and `automatic` are no filters of each signal
-/// alone: they leave the signals as they are, as `none` does (see `externally_driven`).
+/// Passes each row of a record (m x N) through the same filter of length n samples, from the steady state of
+/// the first column. The filters are linear and the same for all rows, so that e = Delta G u holds for the
+/// filtered signals as for the measured ones. `external` and `automatic` do not filter each signal alone.
+/// This function leaves the signals as they are for them, as it does for `none` (see `externally_driven`).
 /// @throws InputError for a record without samples, values that are not finite, or n below 1
 Eigen::MatrixXd noise_filtered(const Eigen::Ref<const Eigen::MatrixXd>& signals, NoiseFilter filter,
                                Eigen::Index length);
@@ -32,15 +32,15 @@ Eigen::MatrixXd moving_rows(const Eigen::Ref<const Eigen::MatrixXd>& signals);
 
 /// The part of each MV that follows from signals outside the loop, u - eps with eps = u - V r (`decorrelate`,
 /// without delay). It excludes noise and the answers of the MVs to unmeasured disturbances: r does not depend
-/// on the disturbances, so neither does V r, whereas feedback alone correlates u with the prediction error,
-/// mismatch or not.
+/// on the disturbances, so neither does V r. Feedback alone, in contrast, correlates u with the prediction
+/// error, with or without a mismatch.
 ///
 /// | symbol | name     | shape  | meaning                            |
 /// |--------|----------|--------|------------------------------------|
 /// | u      | u        | nu x N | MVs                                |
 /// | r      | external | nr x N | setpoints, measured disturbances; rows that stand still are left out |
 ///
-/// Without a row that moves the result stands still as well.
+/// If no row of r moves, the result stands still as well.
 /// @throws InputError as `decorrelate`
 Eigen::MatrixXd externally_driven(const Eigen::Ref<const Eigen::MatrixXd>& u,
                                   const Eigen::Ref<const Eigen::MatrixXd>& external,

@@ -26,7 +26,7 @@ PredictionErrorOptions with_common_samples(PredictionErrorOptions fit,
   return fit;
 }
 
-/// The criterion so that smaller is better, and the most by which a smaller model may be worse.
+/// The criterion, with a sign such that smaller is better, and how much worse a smaller model may be.
 struct Score {
   double value;
   double allowance;

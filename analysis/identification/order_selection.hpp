@@ -40,14 +40,14 @@ std::vector<ModelOrder> order_candidates(const OrderGrid& grid, Eigen::Index nu)
 /// Options of `select_order`.
 struct OrderSelectionOptions {
   OrderCriterion criterion = OrderCriterion::validation_fit;
-  /// Share of the record, its end, that is kept for validation. The model is run over the whole record and
+  /// Share of the record that is kept for validation, at its end. The model is run over the whole record and
   /// judged on the end, so that no initial state of the end has to be guessed.
   double validation_share = 0.3;
-  /// A smaller model is taken when its criterion is within this of the best: in percent points of %Fit,
+  /// A smaller model is preferred if its criterion is within this of the best: in percentage points of %Fit,
   /// relative for the loss, absolute for AIC and BIC.
   double tolerance = 1e-6;
-  /// How each model is fitted. The first sample of the loss is put off to the largest
-  /// `ModelOrder::memory` of all ARX candidates, so that all have the same samples.
+  /// How each model is fitted. The first sample of the loss is moved to the largest `ModelOrder::memory` of
+  /// all ARX candidates, so that all candidates have the same samples.
   PredictionErrorOptions fit;
 
   /// @throws InputError for a share outside (0, 1), a tolerance below 0 or invalid options of the fit
@@ -67,7 +67,7 @@ struct OrderCandidate {
 /// The result of a selection.
 struct OrderSelection {
   std::vector<OrderCandidate> candidates;  ///< in the order given
-  std::optional<std::size_t> best;         ///< none when no candidate has a usable status and a criterion
+  std::optional<std::size_t> best;         ///< none if no candidate has a usable status and a criterion
 };
 
 /// Identifies a model of each order on the first part of a record and chooses one by the criterion. Models

@@ -16,7 +16,7 @@ struct OutputErrorCoefficients {
   Eigen::MatrixXd B;  ///< nb x nu
   Eigen::MatrixXd F;  ///< nf + 1 x nu; the first row is 1
 
-  /// How many rows polynomials need that are to hold F and q^-delay B.
+  /// The number of rows that polynomials need to hold F and q^-delay B.
   Eigen::Index rows(Eigen::Index delay) const { return std::max(F.rows(), B.rows() + delay); }
 };
 
@@ -38,16 +38,18 @@ class OutputErrors {
   OutputErrors(const Eigen::Ref<const Eigen::MatrixXd>& u, const Eigen::Ref<const Eigen::VectorXd>& y,
                Eigen::Index delay, Eigen::Index rows);
 
-  /// Half the sum of e^2 of this model, whose roots must be inside; infinity where it is not finite.
+  /// Half the sum of e^2 of this model, whose roots must be inside the unit circle; infinity if the sum is
+  /// not finite.
   double cost(const OutputErrorCoefficients& model);
-  /// J'J and J'e at the model of the last `cost`: all columns are shifts of two signals an input.
+  /// J'J and J'e at the model of the last call of `cost`. All columns of J are shifts of two signals per
+  /// input.
   void products(Eigen::MatrixXd& JJ, Eigen::VectorXd& Je);
 
  private:
   Eigen::Index nu_, delay_;
   std::vector<LaggedColumns> columns_;
-  SignalBank twice_;     ///< the inputs, and once more
-  SignalBank path_;      ///< what follows from the second ones, B u/F
+  SignalBank twice_;     ///< the inputs, and a second copy of them
+  SignalBank path_;      ///< the response to the second copy, B u/F
   SignalBank gradient_;  ///< -u/F, B u/F^2 and e
   LagSums sums_;
   Eigen::VectorXd y_, errors_;

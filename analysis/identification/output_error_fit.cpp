@@ -12,7 +12,7 @@
 namespace mpm {
 namespace {
 
-/// The coefficients of a model of signals in units of their own, for the signals themselves.
+/// Converts the coefficients of a model of scaled signals into a model of the signals themselves.
 PolynomialModel polynomial_model(const OutputErrorCoefficients& found, Eigen::Index delay, double y_unit,
                                  const Eigen::VectorXd& u_unit) {
   PolynomialModel model;
@@ -49,7 +49,8 @@ std::vector<OutputErrorFit> OutputErrorFits::fit(const Eigen::Ref<const Eigen::V
   const double unit = unit_of(y);
   const Eigen::VectorXd scaled_y = y / unit;
   OutputErrors errors(scaled_u, scaled_y, delay, rows);
-  // The search refuses what is not inside; rounding must not put a start at the border outside.
+  // The search refuses roots outside the largest radius, so rounding must not put a start at the border
+  // outside.
   OutputErrorStarts starts(scaled_u, scaled_y, delay, rows, 1.0 - 2.0 * (1.0 - largest_radius), errors);
   std::vector<OutputErrorFit> fits;
   for (const Eigen::Index order : orders) {

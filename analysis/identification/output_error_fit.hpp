@@ -8,16 +8,16 @@
 
 namespace mpm {
 
-/// An output-error model of one order, and its residual.
+/// An output-error model of one order, and its loss.
 struct OutputErrorFit {
   PolynomialModel model;  ///< `noise_variance` is the loss
   double loss = 0.0;      ///< sum e^2/N over the N samples of the record
 };
 
-/// Output-error models of several outputs from the same inputs, over several orders, from rest: for each the
-/// search that `identify_prediction_error` makes from its best start, without a covariance and a verdict on
-/// its end, in a fraction of the time. If a search is stopped before its end, or a start depends on nearly
-/// dependent regressors, the two differ by magnified rounding errors.
+/// Fits output-error models of several outputs from the same inputs, for several orders, from rest. Each
+/// search is the one that `identify_prediction_error` makes from its best start, in a fraction of the time,
+/// but without a covariance and without a status. If a search is stopped before its end, or if a start
+/// depends on nearly dependent regressors, the results of the two differ by magnified rounding errors.
 ///
 /// | symbol | meaning                                     | shape  |
 /// |--------|---------------------------------------------|--------|
@@ -27,8 +27,8 @@ class OutputErrorFits {
  public:
   OutputErrorFits(const Eigen::Ref<const Eigen::MatrixXd>& u, int max_iterations);
 
-  /// A model for each of the orders nf: B/F is a proper function of this order with `delay` 0, a strictly
-  /// proper one, of nf coefficients, otherwise.
+  /// Returns a model for each of the orders nf. With `delay` 0, B/F is a proper function of this order.
+  /// Otherwise it is strictly proper, and B has nf coefficients.
   /// @throws InputError as `identify_prediction_error`
   std::vector<OutputErrorFit> fit(const Eigen::Ref<const Eigen::VectorXd>& y,
                                   const std::vector<Eigen::Index>& orders, Eigen::Index delay) const;

@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-// As in Ceres: the trust region, and the tolerances of search_prediction_error.
+// The trust region as in Ceres, and the tolerances of search_prediction_error().
 constexpr double kFirstRadius = 1e4;
 constexpr double kLargestRadius = 1e16;
 constexpr double kSmallestRadius = 1e-32;
@@ -36,8 +36,8 @@ OutputErrorCoefficients moved(const OutputErrorCoefficients& model, const Eigen:
   return result;
 }
 
-/// The step from (J'J + diagonal/radius) step = -J'e, and by how much the linear model falls; none where
-/// rounding leaves no such step.
+/// The step from (J'J + diagonal/radius) step = -J'e, and the fall of the cost that the linear model
+/// predicts. damped_step() returns none if rounding leaves no such step.
 struct Step {
   Eigen::VectorXd step;
   double predicted;

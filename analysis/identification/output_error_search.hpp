@@ -4,7 +4,7 @@
 
 namespace mpm {
 
-/// Where a search ends.
+/// The limits of a search.
 struct OutputErrorSearch {
   int max_iterations;
   double largest_radius;  ///< of the roots of F
@@ -13,13 +13,13 @@ struct OutputErrorSearch {
 /// A model that a search has found.
 struct OutputErrorMinimum {
   OutputErrorCoefficients model;
-  double loss;  ///< sum of e^2; infinity where it is not finite
+  double loss;  ///< sum of e^2; infinity if it is not finite
 };
 
-/// Minimises sum e^2 from `start`, as `search_prediction_error` does: the same steps of the
-/// Levenberg-Marquardt method (Ceres's scaling, radius and tolerances), to rounding. They are found from the
-/// products J'J of the gradients, all of which follow from those of 1/F_j u_j and 1/F_j^2 B_j u_j by shifts
-/// (`LagSums`), instead of an orthogonal factorisation of J.
+/// Minimises sum e^2 from `start` as `search_prediction_error` does, with the same steps of the
+/// Levenberg-Marquardt method (Ceres's scaling, radius and tolerances) up to rounding. The steps follow from
+/// the products J'J of the gradients instead of an orthogonal factorisation of J. All these products follow
+/// from those of 1/F_j u_j and 1/F_j^2 B_j u_j by shifts (`LagSums`).
 OutputErrorMinimum search_output_error(OutputErrors& errors, const OutputErrorCoefficients& start,
                                        const OutputErrorSearch& search);
 

@@ -14,10 +14,10 @@
 namespace mpm {
 namespace {
 
-// Rounds that move no coefficient of F by more than this give what the one before gave.
+// A round that moves no coefficient of F by more than this gives the same result as the round before.
 constexpr double kSameDenominator = 1e-9;
 // Least pivot of X'X with a diagonal of 1. The rounding of the products, 1e-16, is then 1e-4 of it, and one
-// step of refinement makes 1e-8 of that.
+// step of refinement reduces that to 1e-8.
 constexpr double kLeastPivot = 1e-12;
 // Above this pivot the products alone leave 6 digits.
 constexpr double kSafePivot = 1e-10;
@@ -33,7 +33,7 @@ std::vector<Eigen::Index> arx_lengths(Eigen::Index nu, Eigen::Index nf, Eigen::I
   return lengths;
 }
 
-/// Coefficients of a monic polynomial from those behind the 1, brought inside.
+/// The monic polynomial with the coefficients `tail` after the 1, with its roots brought within `radius`.
 Eigen::VectorXd stable_monic(const Eigen::Ref<const Eigen::VectorXd>& tail, double radius) {
   Eigen::VectorXd polynomial(tail.size() + 1);
   polynomial << 1.0, tail;
@@ -51,9 +51,10 @@ Eigen::Index places(Eigen::Index inputs) {
   return 8 * ((inputs + 3) / 4);
 }
 
-/// For each of the four responses of a group the sum of the squares of what `path`, of their inputs, leaves.
+/// For each of the four responses of a group, the sum of squares of its difference from the response in
+/// `path`.
 Eigen::Array4d squared_distances(const SignalBank& responses, const SignalBank& path, Eigen::Index group) {
-  constexpr Eigen::Index kTogether = 4;  // as many sums as do not wait for each other
+  constexpr Eigen::Index kTogether = 4;  // number of sums side by side, so that none waits for the one before
   Eigen::Array<double, 4, kTogether> sums = Eigen::Array<double, 4, kTogether>::Zero();
   const double* w = responses.at(group, 0);
   const double* from = path.at(group, 0) + 4;
@@ -83,9 +84,9 @@ OutputErrorStarts::OutputErrorStarts(const Eigen::Ref<const Eigen::MatrixXd>& u,
   signals_[nu_] = y;
 }
 
-/// The coefficients x of the regression of signal `target` on the columns X, from their products of the last
-/// sums: X'X x = X'y, refined by X'(y - X x) where the products leave few digits, and by `least_squares` from
-/// the columns where they leave too few.
+/// Returns the coefficients x of the regression of signal `target` on the columns X, from their products in
+/// `sums_`: X'X x = X'y. If the products leave few digits, x is refined by X'(y - X x). If they leave too
+/// few, x comes from the columns by `least_squares`.
 Eigen::VectorXd OutputErrorStarts::regression(const SignalBank& signals,
                                               const std::vector<LaggedColumns>& columns, Eigen::Index target,
                                               Eigen::Index first) {
@@ -152,7 +153,8 @@ const SignalBank& OutputErrorStarts::responses(const ArxOrder& order) {
   return responses_.emplace(order, std::move(responses)).first->second;
 }
 
-/// F of each path nearest to the response w_j of its input, by Steiglitz and McBride; B is not set.
+/// Finds the F of each path that comes nearest to the response w_j of its input, by Steiglitz and McBride; B
+/// is not set.
 OutputErrorCoefficients OutputErrorStarts::reduced(const SignalBank& responses, Eigen::Index nb,
                                                    Eigen::Index nf) {
   const Eigen::Index N = responses.samples();
@@ -193,7 +195,7 @@ OutputErrorCoefficients OutputErrorStarts::reduced(const SignalBank& responses, 
   return model;
 }
 
-/// All B by least squares on y, the F being known.
+/// Fits all B by least squares on y, with the F known.
 void OutputErrorStarts::fit_numerators(OutputErrorCoefficients& model) {
   const Eigen::Index nb = model.B.rows();
   Eigen::MatrixXd F = Eigen::MatrixXd::Zero(model.F.rows(), nu_ + 1);  // the output as it is

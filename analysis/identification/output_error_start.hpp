@@ -15,23 +15,24 @@ namespace mpm {
 
 /// First guesses for `search_output_error`, by the steps 1 to 3 of `prediction_error_starts`, for one output
 /// and several orders, which share the long ARX models. Products of shifted signals take the place of a
-/// factorisation of the regressors, except where these are so near to dependent that the products would not
-/// tell.
+/// factorisation of the regressors, except where the regressors are so nearly dependent that the products
+/// have too few digits.
 class OutputErrorStarts {
  public:
-  /// `errors`: those of models of y from u, which must outlive the object; `rows`: how many the polynomials
-  /// need at most. Every F has its roots within `largest_radius`.
+  /// `errors` are those of models of y from u and must outlive the object. `rows` is the largest number of
+  /// rows that the polynomials need. Every F has its roots within `largest_radius`.
   OutputErrorStarts(const Eigen::Ref<const Eigen::MatrixXd>& u, const Eigen::Ref<const Eigen::VectorXd>& y,
                     Eigen::Index delay, Eigen::Index rows, double largest_radius, OutputErrors& errors);
 
-  /// The start with the smallest loss for nb coefficients of B and F of order nf; 0 when no loss is finite.
+  /// The start with the smallest loss for nb coefficients of B and F of order nf; B = 0 and F = 1 if no loss
+  /// is finite.
   OutputErrorCoefficients best(Eigen::Index nb, Eigen::Index nf);
 
  private:
   using ArxOrder = std::pair<Eigen::Index, Eigen::Index>;  ///< na, nb
 
-  /// What each input alone does by an ARX model, w_j = B_j/A u_j, and the inputs: four of them and then their
-  /// inputs in each group of eight.
+  /// The response to each input alone by an ARX model, w_j = B_j/A u_j, and the inputs: each group of eight
+  /// has four responses and then their inputs.
   const SignalBank& responses(const ArxOrder& order);
   OutputErrorCoefficients reduced(const SignalBank& responses, Eigen::Index nb, Eigen::Index nf);
   void fit_numerators(OutputErrorCoefficients& model);
@@ -44,7 +45,8 @@ class OutputErrorStarts {
   SignalBank signals_;  ///< the inputs and the output
   SignalBank inputs_;   ///< the inputs, in the places of the responses and in their own
   std::map<ArxOrder, SignalBank> responses_;
-  // What is filtered again and again; memory that is given back each time costs as much as a filter.
+  // Signals that are filtered again and again. To allocate their memory each time would cost as much as a
+  // filter.
   SignalBank filtered_signals_, filtered_, path_;
   LagSums sums_;
   LaneCholesky factor_;

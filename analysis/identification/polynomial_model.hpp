@@ -22,7 +22,7 @@ struct InputPath {
 ///
 /// with polynomials in q^-1 and a white e. Three families are special cases of it (Ljung 1999, chapter 4):
 ///
-/// | family             | equation                            | 1 is            |
+/// | family             | equation                            | equal to 1      |
 /// |--------------------|-------------------------------------|-----------------|
 /// | ARX                | A y = sum_j B_j u_j + e             | F, C, D         |
 /// | output error (OE)  | y = sum_j B_j/F_j u_j + e           | A, C, D         |

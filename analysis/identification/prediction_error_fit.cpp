@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kConverged = 1e-8;    // squared relative offset
 constexpr double kNoiseFree = 1e-18;   // of the sum of squares of the output
-constexpr double kNearlyExact = 1e-8;  // of it: worth a search without a noise model first
+constexpr double kNearlyExact = 1e-8;  // of it: below, a search without a noise model comes first
 
 /// The data of one identification.
 struct Data {
@@ -32,9 +32,9 @@ struct Data {
   }
   double size() const { return y.tail(samples()).squaredNorm(); }
   bool is_exact(double sum) const { return sum <= kNoiseFree * size(); }
-  /// Is there one response only that explains the output without an error? Of two such responses the
-  /// difference h has sum_l h(l) u(k - l) = 0 at every sample k, from rest on: from the first move of the
-  /// input on all h(l) must be 0, as far as the record reaches. Several inputs could make up for each other.
+  /// Whether only one response explains the output without an error. The difference h of two such responses
+  /// has sum_l h(l) u(k - l) = 0 at every sample k, from rest on. From the first move of the input on, all
+  /// h(l) must then be 0, as far as the record reaches. Several inputs could compensate each other.
   bool determines_response() const {
     return u.rows() == 1 && options.start == StartState::rest && options.first_sample == 0 && !u.isZero(0.0);
   }
@@ -59,8 +59,8 @@ Identification assess(const Data& data, const PolynomialModel& model) {
 
   const LeastSquares step = least_squares(data.gradient(model), e, data.options.rank_tolerance);
   if (step.rank < p) {
-    // Orders above those of the data: coefficients of common factors are free, and the response is what it
-    // is.
+    // With orders above those of the data, the coefficients of common factors are free, but the response can
+    // still be determined.
     const bool has_noise_model = model.C.size() + model.D.size() > 2;
     result.status = !has_noise_model && data.is_exact(sum) && data.determines_response()
                         ? IdentificationStatus::noise_free

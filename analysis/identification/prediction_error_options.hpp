@@ -25,8 +25,7 @@ struct PredictionErrorOptions {
   double rank_tolerance = kRankTolerance;
 
   /// @throws InputError for a first sample below 0, an iteration limit or number of starts below 1, or a
-  /// radius or tolerance
-  ///   outside (0, 1)
+  ///   radius or tolerance outside (0, 1)
   void validate() const;
   bool operator==(const PredictionErrorOptions&) const = default;
 };

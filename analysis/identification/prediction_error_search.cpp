@@ -31,7 +31,7 @@ struct Units {
   }
 };
 
-/// The prediction errors over the coefficients.
+/// The prediction errors as a function of the coefficients.
 class PredictionErrorCost final : public ceres::CostFunction {
  public:
   PredictionErrorCost(const ModelOrder& order, const Eigen::Ref<const Eigen::VectorXd>& y,

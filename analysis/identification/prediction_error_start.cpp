@@ -25,8 +25,8 @@ Eigen::VectorXd regression(const ModelOrder& order, const Eigen::VectorXd& y, co
   return least_squares(arx_regressors(order, y, u, order.memory()), y.tail(n), kRankTolerance).x;
 }
 
-/// Orders of the ARX models to start from: as low as a common denominator can be, and higher ones, as far as
-/// there are three samples a parameter.
+/// Orders of the ARX models to start from: the lowest order that a common denominator can have, and higher
+/// ones, as long as there are three samples per parameter.
 std::vector<Eigen::Index> arx_orders(const ModelOrder& order, Eigen::Index samples) {
   Eigen::Index largest = 1;
   Eigen::Index sum = order.nd;
@@ -44,7 +44,7 @@ std::vector<Eigen::Index> arx_orders(const ModelOrder& order, Eigen::Index sampl
   return orders;
 }
 
-/// F of the path nearest to the response w of the input u, by Steiglitz and McBride.
+/// Finds the F of the path that comes nearest to the response w of the input u, by Steiglitz and McBride.
 Eigen::VectorXd reduced_denominator(const Eigen::VectorXd& w, const Eigen::VectorXd& u, const PathOrder& path,
                                     const PredictionErrorOptions& options) {
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
@@ -68,7 +68,7 @@ Eigen::VectorXd reduced_denominator(const Eigen::VectorXd& w, const Eigen::Vecto
   return best.size() == path.nf + 1 ? best : Eigen::VectorXd(Eigen::VectorXd::Unit(path.nf + 1, 0));
 }
 
-/// All B by least squares on y, the F being known.
+/// Fits all B by least squares on y, with the F known.
 void fit_numerators(PolynomialModel& model, const Eigen::VectorXd& y, const Eigen::MatrixXd& u,
                     const PredictionErrorOptions& options) {
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
@@ -93,7 +93,7 @@ void fit_numerators(PolynomialModel& model, const Eigen::VectorXd& y, const Eige
   }
 }
 
-/// C and D of the noise v, by Hannan and Rissanen.
+/// Fits C and D to the noise v, by Hannan and Rissanen.
 void fit_noise(PolynomialModel& model, const Eigen::VectorXd& v, double radius) {
   const Eigen::Index nc = model.C.size() - 1;
   const Eigen::Index nd = model.D.size() - 1;
@@ -144,7 +144,8 @@ std::vector<PolynomialModel> prediction_error_starts(const Eigen::Ref<const Eige
                                                      const Eigen::Ref<const Eigen::MatrixXd>& u,
                                                      const ModelOrder& order,
                                                      const PredictionErrorOptions& options) {
-  // The search refuses what is not inside; rounding must not put a start at the border outside.
+  // The search refuses roots outside the largest radius, so rounding must not put a start at the border
+  // outside.
   PredictionErrorOptions inner = options;
   inner.largest_radius = 1.0 - 2.0 * (1.0 - options.largest_radius);
   std::vector<std::pair<double, PolynomialModel>> starts;

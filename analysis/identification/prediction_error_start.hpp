@@ -15,7 +15,8 @@ inline constexpr Eigen::Index kLongestArx = 25;
 inline constexpr int kReductionRounds = 12;
 
 /// First guesses for `identify_prediction_error`, the one with the smallest loss first; all within
-/// `options.largest_radius`. One guess for each of a few orders of the ARX model that it comes from:
+/// `options.largest_radius`. There is one guess for each of a few orders of the ARX model from which it is
+/// made:
 ///
 /// 1. ARX of high order, A y = sum_j B_j u_j + e, which describes any linear system with any noise;
 /// 2. the part of each input alone, w_j = B_j/A u_j, free of noise, reduced to the wanted orders by the

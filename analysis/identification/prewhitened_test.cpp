@@ -20,7 +20,7 @@ Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factorised(const Eigen::Ref<const Ei
   return qr;
 }
 
-/// About the means of the columns, with unit norm; zero where a column does not move.
+/// The columns about their means, scaled to unit norm; zero for a column that does not move.
 Eigen::MatrixXd unit_regressors(const Eigen::MatrixXd& x) {
   Eigen::MatrixXd unit = x.rowwise() - x.colwise().mean();
   for (Eigen::Index j = 0; j < unit.cols(); ++j) {
@@ -53,8 +53,9 @@ Eigen::MatrixXd side_by_side(const std::vector<Eigen::MatrixXd>& groups, Eigen::
   return x;
 }
 
-/// Of the group at columns first ... first + count - 1 of R, the regressors in an orthonormal basis (r x m)
-/// in which the target is c (r): what c has outside of the span of the other columns.
+/// Tests the group at columns first ... first + count - 1 of R. R has the regressors in an orthonormal basis
+/// (r x m), in which the target is c (r). The group explains the part of c outside the span of the other
+/// columns.
 FTest partial_test(const Eigen::MatrixXd& R, const Eigen::VectorXd& c, Eigen::Index first, Eigen::Index count,
                    double variance, Eigen::Index freedom) {
   Eigen::MatrixXd others(R.rows(), R.cols() - count);
@@ -97,7 +98,7 @@ PrewhitenedTest prewhitened_test(const Eigen::Ref<const Eigen::VectorXd>& e,
   const Eigen::Index r = qr.rank();
   const Eigen::VectorXd rotated = qr.householderQ().adjoint() * w;
   const Eigen::Index freedom = whiteness.freedom() - r;
-  // A residual of rounding would be no variance to divide by.
+  // A residual that is only rounding must not be the variance to divide by.
   const double residual = std::max(rotated.tail(rotated.size() - r).squaredNorm(),
                                    std::numeric_limits<double>::epsilon() * w.squaredNorm());
   if (r == 0 || !(residual > 0.0))

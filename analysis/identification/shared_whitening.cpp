@@ -25,8 +25,9 @@ Eigen::MatrixXd stationary_covariance(Eigen::MatrixXd F, Eigen::MatrixXd Q) {
 
 }  // namespace
 
-/// The filter under one disturbance. The state is [x(k), x(k-1), those of each channel, each slow noise]; a
-/// series sees x(k-1), its channel and its noise alone, so that F and H act on rows.
+/// The filter for one disturbance model. The state is [x(k), x(k-1), then for each series the states of its
+/// channel and its slow noise]. A series depends on x(k-1), its channel and its noise alone, so that F and H
+/// act on rows.
 class SharedWhitening::Filter {
  public:
   Filter(const SharedWhitening& of, double a, double b, Eigen::Index rows)
@@ -105,7 +106,7 @@ class SharedWhitening::Filter {
       seen += M.row(first_[i] + n);
   }
 
-  /// Which series have a sample; whether they are those of the sample before.
+  /// Finds which series have a sample. Returns whether they are the same as at the sample before.
   bool find_observed(Eigen::Index k) {
     bool same = !observed_.empty();
     observed_.resize(outputs_.size(), false);
@@ -134,7 +135,8 @@ class SharedWhitening::Filter {
     products.next() = innovation_.transpose() / root_S_(column);
   }
 
-  /// Gain and variance of the innovation of a series, given the series before it in the same sample.
+  /// Updates the gain and the variance of the innovation of a series, given the series before it in the same
+  /// sample.
   void renew(std::size_t i, double white) {
     const auto column = static_cast<Eigen::Index>(i);
     observe_state(i, P_, covariance_);
@@ -162,7 +164,7 @@ class SharedWhitening::Filter {
   }
 
   const std::vector<SharedOutput>& outputs_;
-  std::vector<Eigen::Index> first_;  ///< state of each series
+  std::vector<Eigen::Index> first_;  ///< first state of each series
   double a_;
   Eigen::VectorXd Q_;  ///< diagonal
   Eigen::MatrixXd K_;

@@ -16,31 +16,34 @@ namespace mpm {
 /// all of w and v independent, white, normal, variance 1, x and n stationary. The past of an integrating
 /// channel counts as about a thousand samples long.
 struct SharedOutput {
-  DiscreteChannel channel;        ///< H, unit of z a unit of x
+  DiscreteChannel channel;        ///< H, in units of z per unit of x
   double a = 0.0, b = 0.0;        ///< of the slow noise of the series; b = 0: it has none
-  double white = 1.0;             ///< standard deviation of the white one
-  const Eigen::MatrixXd* series;  ///< p_i x N: z, NaN where there is no sample, and what is whitened with it
+  double white = 1.0;             ///< standard deviation of the white noise
+  const Eigen::MatrixXd* series;  ///< p_i x N: z (NaN: no sample), then the rows to be whitened with it
 
   bool has_slow_noise() const { return b != 0.0; }
   Eigen::Index states() const { return channel.A.rows() + (has_slow_noise() ? 1 : 0); }
 };
 
-/// Of the first row of all series, and of the rows below them, p = 1 + sum (p_i - 1) in all.
+/// Products of the whitened series. The first rows of all series count as one row, the rows below them as one
+/// each: p = 1 + sum (p_i - 1) in all.
 struct SharedProducts {
   Eigen::VectorXd log_determinant;  ///< of the innovations of each series
-  /// Of the whitened rows in the innovations of each series, p x p, the lower triangles.
+  /// Products of the whitened rows over the innovations of each series, p x p, the lower triangles.
   std::vector<Eigen::MatrixXd> products;
 };
 
 /// Whitens series with a shared disturbance by a Kalman filter. The series are shifted against each other by
-/// the dead times of their channels, so that these need no states: a normal density does not depend on the
-/// order in which its samples are read. The rows below the first one of a series belong to this series alone.
+/// the dead times of their channels, so that dead times need no states: a normal density does not depend on
+/// the order in which its samples are read. The rows below the first one of a series belong to this series
+/// alone.
 class SharedWhitening {
  public:
   /// The series must outlive this. Throws nothing; at least one series.
   explicit SharedWhitening(std::vector<SharedOutput> outputs);
 
-  /// Under x with these a and b. `rows`: with the rows below the first ones; otherwise p = 1.
+  /// Returns the products for an x with these a and b. With `rows` they include the rows below the first
+  /// ones; otherwise p = 1.
   SharedProducts products(double a, double b, bool rows) const;
 
  private:

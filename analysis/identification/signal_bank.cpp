@@ -12,7 +12,8 @@ namespace {
 
 using Coefficients = Eigen::Ref<const Eigen::MatrixXd>;
 
-/// The coefficients of the signals of one group: eight numbers a row, zeros for signals that there are not.
+/// The coefficients of the signals of one group: eight numbers per row, with zeros where the group has fewer
+/// signals.
 LaneMatrix coefficients(const Eigen::Ref<const Eigen::MatrixXd>& polynomials, Eigen::Index group) {
   LaneMatrix rows(8, polynomials.rows());
   const Eigen::Index signals = std::min<Eigen::Index>(8, polynomials.cols() - 8 * group);
@@ -22,7 +23,7 @@ LaneMatrix coefficients(const Eigen::Ref<const Eigen::MatrixXd>& polynomials, Ei
   return rows;
 }
 
-/// The same for the few rows of `filter_paths`, without a memory of its own.
+/// The same for the few rows of `filter_paths`, without an allocation.
 struct PathCoefficients {
   alignas(64) double number[8 * (LaneKernels::kPathOrder + 1)] = {};
 

@@ -40,22 +40,23 @@ class SignalBank {
   LaneMemory memory_of_;
 };
 
-/// Each signal through its filter from rest, q^-delay B/F: `filter` of all of them at once, with the same
-/// equation.
+/// Passes each signal through its filter q^-delay B/F, from rest: does what `filter` does, for all signals at
+/// once.
 ///
 /// | symbol | meaning                                        | shape          |
 /// |--------|------------------------------------------------|----------------|
-/// | B      | numerators, a column a signal                  | nb x count     |
-/// | F      | denominators, their first row is taken for 1   | nf + 1 x count |
+/// | B      | numerators, one column per signal              | nb x count     |
+/// | F      | denominators, their first row is taken as 1    | nf + 1 x count |
 ///
-/// `out` may be `in` only without a numerator of more than one coefficient and without a delay. The memory of
-/// the banks must reach nb - 1 + delay and nf samples back, and 1 at least.
+/// `out` may be `in` only if the numerators have one coefficient and there is no delay. The memory of the
+/// banks must reach nb - 1 + delay and nf samples back, and at least 1.
 void filter_bank(const Eigen::Ref<const Eigen::MatrixXd>& B, const Eigen::Ref<const Eigen::MatrixXd>& F,
                  Eigen::Index delay, const SignalBank& in, SignalBank& out);
 
-/// Two filters one behind the other, from rest, of each signal x: path = B x/F1, and out = B x/(F1 F2), or
-/// out = x/F1 without F2. All polynomials have as many rows, 2 or more, and a column a signal; the first rows
-/// of F1 and F2 are taken for 1. The memory of the banks must reach as far back as the polynomials.
+/// Passes each signal x through two filters in series, from rest: path = B x/F1, and out = B x/(F1 F2), or
+/// out = x/F1 without F2. All polynomials have the same number of rows, 2 or more, and one column per signal.
+/// The first rows of F1 and F2 are taken as 1. The memory of the banks must reach as far back as the
+/// polynomials.
 void filter_paths(const Eigen::Ref<const Eigen::MatrixXd>& F1, const Eigen::Ref<const Eigen::MatrixXd>& B,
                   const Eigen::MatrixXd* F2, const SignalBank& x, SignalBank& path, SignalBank& out);
 

@@ -48,7 +48,7 @@ std::vector<StepResponse> step_test(const Study& study, const StepTestOptions& o
     throw InputError("samples of a step response", fmt::to_string(options.samples), ">= 1");
   Study noisy = study;
   noisy.seed ^= kOtherSeed;
-  noisy.simulation.noise.sequence = SignalSequence::each;  // of the two ways of a step
+  noisy.simulation.noise.sequence = SignalSequence::each;  // new noise for each direction of a step
   noisy.simulation.samples = options.samples;
   const std::unique_ptr<Plant> plant = faultless_plant(study);
   std::vector<StepResponse> responses;

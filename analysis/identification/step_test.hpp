@@ -26,10 +26,10 @@ struct StepResponse {
   Eigen::VectorXd asymmetry;
 };
 
-/// Steps every input of the plant of the study up and, from rest again, down: in open loop, about the
-/// operating point, without faults. The mean of the two is free of an effect of nonlinearity that is the same
-/// for both. The noise is of a stream of its own. Errors: InputError for sizes that do not fit, a number of
-/// samples < 1, a plant that fails under a step, and as Plant::reset().
+/// Steps every input of the plant of the study up and, again from rest, down: in open loop, about the
+/// operating point, without faults. In the mean of the two responses, an effect of nonlinearity that is the
+/// same for both cancels. The noise has a random stream of its own. Throws InputError for sizes that do not
+/// fit, a number of samples < 1, a plant that fails under a step, and as Plant::reset().
 std::vector<StepResponse> step_test(const Study& study, const StepTestOptions& options);
 
 }  // namespace mpm

@@ -4,8 +4,8 @@
 
 namespace mpm {
 
-/// sum over k of v(k) v(k)', of vectors v(k) of p elements that come one by one. They are kept until there
-/// are enough of them for a product of matrices, which is several times as fast as one of vectors.
+/// The sum over k of v(k) v(k)', for vectors v(k) of p elements that come one by one. They are kept until
+/// there are enough of them for a product of matrices, which is several times as fast as products of vectors.
 class SumOfOuterProducts {
  public:
   explicit SumOfOuterProducts(Eigen::Index size)
