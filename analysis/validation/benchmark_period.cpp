@@ -11,9 +11,9 @@
 namespace mpm {
 namespace {
 
-constexpr double kFewestPresent = 0.5;  // of the most values that a signal has in as many samples
+constexpr double kFewestPresent = 0.5;  // of the most values that a signal has in any period of this length
 
-/// Sums over the samples of a signal up to each, so that those of a period are differences.
+/// The sums over the samples of a signal up to each sample, so that the sums over a period are differences.
 struct RunningSums {
   Eigen::ArrayXd count, sum, squares, moves;
 
@@ -37,7 +37,8 @@ struct RunningSums {
 
   Eigen::Index samples() const { return count.size() - 1; }
   bool is_empty() const { return count(samples()) == 0.0; }
-  /// The first sample of a period is no move: what it differs from lies before it.
+  /// The first sample of a period does not count as a move, because the sample from which it differs lies
+  /// before the period.
   bool moves_in(Eigen::Index first, Eigen::Index end) const { return moves(end) > moves(first + 1); }
   double variance(Eigen::Index first, Eigen::Index end) const {
     const double n = count(end) - count(first), mean = (sum(end) - sum(first)) / n;
@@ -47,7 +48,8 @@ struct RunningSums {
   double most_in(Eigen::Index length) const {
     return (count.tail(count.size() - length) - count.head(count.size() - length)).maxCoeff();
   }
-  /// log(variance over that of all samples); none: fewer than `fewest` values, or it does not vary.
+  /// log(variance in the period / variance of all samples); none if the signal has fewer than `fewest` values
+  /// or does not vary.
   std::optional<double> log_ratio(Eigen::Index first, Eigen::Index end, double fewest) const {
     if (const double n = count(end) - count(first); n < 2.0 || n < fewest || !moves_in(first, end))
       return std::nullopt;

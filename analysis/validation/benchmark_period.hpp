@@ -6,22 +6,23 @@
 
 namespace mpm {
 
-/// The share of a record that is sought as its benchmark, one over this.
+/// The benchmark that is sought in a record is one part in kBenchmarkShare of it.
 inline constexpr Eigen::Index kBenchmarkShare = 4;
 
-/// The period of `samples` samples in which `signals` vary least while `inputs` move, for methods that
-/// compare with a benchmark: the one with the least
+/// Finds the period of `samples` samples in which `signals` vary least while `inputs` move, for methods that
+/// compare with a benchmark. It is the period with the least
 ///
 ///   sum_i log( mean (x_i - mean)^2 / m_i ),
 ///
-/// m_i the same over all samples, in which each signal has half of the most values that it has in as many
-/// samples and varies, and each input that moves at all moves. Of the simulation errors y - y_sim it is the
-/// logarithm of the volume det(cov e) of Yu and Qin (2.13), which their benchmark index compares, without
-/// their correlations; it does not depend on units, and a disturbance or a mismatch whose MV moves makes it
-/// larger. Nothing says that this period is good: only that no other one of the record is better.
+/// where m_i is the same mean square over all samples. In the period each signal must vary and have at least
+/// half of the most values that it has in any period of this length, and each input that moves at all must
+/// move. For the simulation errors y - y_sim the sum is the logarithm of the volume det(cov e) of Yu and Qin
+/// (2.13), which their benchmark index compares, but without correlations. It does not depend on units, and a
+/// disturbance or a mismatch whose MV moves makes it larger. The period need not be good: it is only the
+/// best one of the record.
 ///
-/// First sample and the one after the last; of equal ones the earliest. Equal numbers: there is no such
-/// period, no signal has a value, or the record is shorter.
+/// Returns its first sample and the sample after its last one; the earliest of equal periods. The two are
+/// equal if there is no such period, if no signal has a value, or if the record is shorter.
 ///
 /// | symbol | name    | shape | unit                        |
 /// |--------|---------|-------|-----------------------------|

@@ -22,7 +22,7 @@ namespace {
 constexpr double kFarFromZero = 8.0;   // standard deviations
 constexpr double kOftenBeyond = 0.05;  // of the samples
 constexpr double kFarMore = 0.8;       // explained, in the sum over the CVs
-constexpr double kNothing = 0.05;      // explained
+constexpr double kNothing = 0.05;      // least explained share of a CV that counts
 constexpr double kRoundingShare = 1e-12;
 
 /// One variable of the record.
@@ -62,7 +62,7 @@ double deviation_of(const Eigen::ArrayXd& values) {
   return std::sqrt((values - values.mean()).square().mean());
 }
 
-/// Does it never move, except for rounding of what it may move?
+/// Whether it never moves, except for rounding relative to the range in which it may move.
 bool is_constant(const RecordedVariable& variable) {
   const Eigen::ArrayXd values = variable.present();
   const double width = variable.is_limited() ? variable.upper - variable.lower : 0.0;
@@ -80,7 +80,7 @@ void refuse_out_of_proportion(const RecordedVariable& variable) {
                       kLargestValue));
 }
 
-/// The values but for those of an instrument that is frozen.
+/// Returns the values without those of a frozen instrument.
 Eigen::ArrayXd without_frozen(const Eigen::ArrayXd& values) {
   const Standstill stretch = longest_standstill(values.matrix().transpose());
   if (!is_frozen(stretch, values.size()) || stretch.length() == values.size())
@@ -90,7 +90,7 @@ Eigen::ArrayXd without_frozen(const Eigen::ArrayXd& values) {
   return left;
 }
 
-/// Does it look like an absolute value?
+/// Whether it looks like an absolute value.
 bool is_far_off(const RecordedVariable& variable) {
   const Eigen::ArrayXd values = without_frozen(variable.present());
   const double mean = values.mean();
@@ -100,7 +100,8 @@ bool is_far_off(const RecordedVariable& variable) {
   return mean < variable.lower - width || mean > variable.upper + width;
 }
 
-/// The mean as the file has it; 0 where it differs from 0 by the rounding of a sum only.
+/// Returns the mean of the values as they are in the file; 0 if it differs from 0 only by the rounding of a
+/// sum.
 double recorded_mean(const Study& study, const RecordedVariable& variable) {
   const auto of = [&](const DataOptions::Numbers& numbers, double fallback) {
     const auto found = numbers.find(variable.name);
@@ -190,7 +191,7 @@ void check_values(const RecordedVariable& variable, std::vector<std::string>& wa
                     variable.name, longest.length()));
 }
 
-/// Does a CV stay away from a level for most of the time, by more than it moves meanwhile?
+/// Whether a CV stays away from a level for most of the time, by more than it moves meanwhile.
 bool stays_away(const Eigen::RowVectorXd& y, double level) {
   constexpr Eigen::Index kBlocks = 20;
   constexpr double kFarAway = 2.0;  // standard deviations within a block
@@ -227,7 +228,7 @@ Eigen::MatrixXd simulated(const Study& study, const Eigen::MatrixXd& u, const Ei
                           Eigen::VectorXd::Zero(u.rows()), moves, disturbances);
 }
 
-/// What y_sim explains of a CV, -1 to 1; 0 of one that it leaves alone.
+/// The share of a CV that y_sim explains, -1 to 1; 0 if y_sim does not move the CV.
 double explained(const Eigen::RowVectorXd& y, const Eigen::RowVectorXd& y_sim) {
   const auto there = !y.array().isNaN();
   const double count = std::max(1.0, there.cast<double>().sum());
@@ -247,7 +248,7 @@ double explained(const Eigen::MatrixXd& y, const Eigen::MatrixXd& y_sim) {
   return sum;
 }
 
-/// Tries what people confuse, and says what makes the model explain far more.
+/// Tries what people often confuse, and reports what makes the model explain far more.
 class ExchangeSearch {
  public:
   ExchangeSearch(const Study& study, const PlantRecord& record)
@@ -290,7 +291,8 @@ class ExchangeSearch {
   }
 
  private:
-  /// Of the whole record and of its second half, in which an unknown past is over.
+  /// Whether the model explains nothing of any CV, in the whole record and in its second half, which an
+  /// unknown past no longer affects.
   bool explains_nothing() const {
     for (const Eigen::Index samples : {record_.samples(), record_.samples() / 2})
       for (Eigen::Index cv = 0; cv < record_.y.rows(); ++cv)

@@ -18,7 +18,7 @@ namespace {
 constexpr double kOftenInfeasible = 0.2;
 constexpr double kWideInterval = 0.3;
 
-/// Of Wilson's interval of the rate `p` of about `loops` loops.
+/// The width of Wilson's interval of the rate `p` over about `loops` loops.
 double interval_width(double p, double loops, double confidence) {
   const auto total = static_cast<std::int64_t>(std::llround(loops));
   const auto hits = static_cast<std::int64_t>(std::llround(p * static_cast<double>(total)));
@@ -26,7 +26,7 @@ double interval_width(double p, double loops, double confidence) {
   return interval.upper - interval.lower;
 }
 
-/// Of the interval of a rate over so many loops in several worlds, and what it comes down to with ever more.
+/// The width of the interval of a rate over some loops in several worlds, and its limit with ever more loops.
 struct WorldWidths {
   double now, limit;
 };
@@ -74,8 +74,8 @@ std::int64_t loop_bytes(const Study& study) {
          static_cast<std::int64_t>(sizeof(double));
 }
 
-/// "some reason", of the first loop on which the method has no verdict, when it has one on none; empty
-/// otherwise.
+/// The reason on the first loop if the method has a verdict on no loop; empty if it has a verdict on some
+/// loop.
 std::string why_silent(std::span<const ExperimentRecord> pilot, std::size_t method) {
   std::string reason;
   for (const ExperimentRecord& record : pilot) {

@@ -35,7 +35,7 @@ std::string with_unit(double value, std::string_view unit) {
   return unit == "1" ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
 }
 
-/// Every digit of what people count, three of what nobody does.
+/// Writes a number below 1e9 with every digit, a larger one with three.
 std::string count_text(double count) {
   constexpr double kMostCounted = 1e9;
   return count < kMostCounted ? fmt::format("{:.0f}", count) : fmt::format("{:.3g}", count);
@@ -47,13 +47,14 @@ std::string_view cv_unit(const Study& study, Eigen::Index cv) {
 
 // --- Time ---
 
-/// A time of some channel from an MV, and which channel.
+/// A time of a channel from an MV, and the name of the channel.
 struct ChannelTime {
   double time;
   std::string channel;
 };
 
-/// The smallest and the largest of `time` over the channels from MVs that are not zero and have one.
+/// Returns the smallest and the largest `time` over the channels from MVs that are not zero and whose time is
+/// above 0.
 template <class Time>
 std::pair<ChannelTime, ChannelTime> range_of(const Study& study, Time time) {
   ChannelTime smallest{kInfinity, ""}, largest{0.0, ""};
@@ -139,7 +140,8 @@ void check_setpoint(const Study& study, Eigen::Index cv, double setpoint, const 
          "the loop becomes infeasible or never reaches it"});
 }
 
-/// The CV at rest, for all MVs within their hard limits: an interval; anywhere for one that integrates.
+/// Returns the interval in which the CV can be at rest with all MVs within their hard limits; unbounded for a
+/// CV that integrates.
 std::pair<double, double> reach(const Study& study, Eigen::Index cv) {
   if (study.plant.G.is_integrating(cv))
     return {-kInfinity, kInfinity};
@@ -155,7 +157,7 @@ std::pair<double, double> reach(const Study& study, Eigen::Index cv) {
   return {low, high};
 }
 
-/// [wanted_low, wanted_high] is where the CV is to be.
+/// Warns if the MVs cannot bring the CV into [wanted_low, wanted_high].
 void check_reach(const Study& study, Eigen::Index cv, double wanted_low, double wanted_high,
                  const std::string& key, Warnings& warnings) {
   const auto [low, high] = reach(study, cv);
@@ -191,8 +193,8 @@ void check_cvs(const Study& study, Warnings& warnings) {
 
 // --- Noise and excitation ---
 
-/// What the noise of a CV is small beside: its soft range, or the largest step of its setpoint; 0: nothing
-/// known.
+/// Returns what the noise of a CV is compared with: its soft range, or the largest step of its setpoint; 0 if
+/// neither is known.
 std::pair<double, std::string_view> scale_of(const Study& study, Eigen::Index cv) {
   double largest = 0.0, level = study.simulation.initial_setpoint(cv);
   for (const SignalStep& step : study.simulation.setpoint_steps)
