@@ -21,9 +21,9 @@ namespace mpm {
 double cross_validated_penalty(const Eigen::Ref<const Eigen::VectorXd>& r,
                                const std::vector<Eigen::MatrixXd>& groups);
 
-/// Returns the coefficients of each group under the penalty lambda sqrt(m_j) on |X_j b_j|, without a
-/// rescaling of the groups. If the columns of a group depend on each other in this record, returns those of
-/// least norm.
+/// Returns the coefficients of each group under the penalty lambda sqrt(m_j) on |X_j b_j|, for the groups as
+/// they are given. If the columns of a group depend on each other in this record, returns those of least
+/// norm.
 std::vector<Eigen::VectorXd> penalised_coefficients(const Eigen::Ref<const Eigen::VectorXd>& r,
                                                     const std::vector<Eigen::MatrixXd>& groups,
                                                     double lambda);
