@@ -18,13 +18,13 @@
 
 namespace mpm {
 
-/// How far a random mismatch reaches.
+/// Which channels and parameters a random mismatch changes.
 enum class MismatchExtent : std::int8_t {
   parameter = 0,  ///< one parameter of one channel
   channel = 1,    ///< gain, time constant and dead time of one channel
   cv = 2,         ///< one parameter of every channel of a CV, each by its own amount
-  mv = 3,         ///< the gain of every channel of an MV, all by the same factor: its actuator
-  plant = 4,      ///< one parameter of every channel from an MV, each by its own amount
+  mv = 3,         ///< the gain of every channel of an MV, all by the same factor: its actuator changes
+  plant = 4,      ///< one parameter of all channels from MVs, each by its own amount
 };
 
 template <>
@@ -40,7 +40,7 @@ inline constexpr std::array kRandomMismatchParameters{
 struct PlantParameterRange {
   std::string name;
   Distribution factor;                     ///< of the nominal value
-  std::vector<Eigen::Index> affected_cvs;  ///< that a diagnosis should find
+  std::vector<Eigen::Index> affected_cvs;  ///< CVs that a diagnosis should find
 
   bool operator==(const PlantParameterRange&) const = default;
 };
@@ -50,22 +50,23 @@ using ChannelPlace = std::pair<Eigen::Index, Eigen::Index>;
 
 /// Ranges of the random mismatches (table 6.4). Channels are pairs of a CV and an MV with non-zero gain.
 struct MismatchRanges {
-  std::vector<ChannelPlace> channels = {};  ///< that mismatches of every extent change; empty: all
+  std::vector<ChannelPlace> channels = {};  ///< those that a mismatch of any extent may change; empty: all
   /// Relative frequency of each of kRandomMismatchParameters; they need not sum to one.
   std::array<double, kRandomMismatchParameters.size()> parameter_weight{1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
   /// Relative frequency of each of kMismatchExtents.
   std::array<double, kMismatchExtents.size()> extent_weight{1.0, 0.0, 0.0, 0.0, 0.0};
   Distribution gain_factor = Distribution::uniform(0.3, 1.5);
   Distribution time_constant_factor = Distribution::uniform(0.3, 3.0);
-  /// Added to the dead time, in the time unit of the plant. Where the sum would be negative the draw is
-  /// confined to shifts of at least minus the dead time (docs/methods.md).
+  /// Added to the dead time, in the time unit of the plant. If the sum could be negative, the draw is
+  /// confined to shifts that leave a dead time of at least 0 (docs/methods.md).
   Distribution dead_time_shift = Distribution::uniform(-2.0, 2.0);
-  /// Time constant of a further lag, and of an inverse response, over the residence time of the channel.
+  /// Time constant of an added lag, and of an added inverse response, relative to the residence time of the
+  /// channel.
   Distribution second_order = Distribution::uniform(0.2, 1.0);
   Distribution inverse_response = Distribution::uniform(0.2, 1.0);
   /// Sizes are scaled until the loop has this effect (FaultScales); none: they are as drawn.
   std::optional<Distribution> impact = {};
-  std::vector<PlantParameterRange> plant_parameters = {};  ///< of a nonlinear plant, instead of channels
+  std::vector<PlantParameterRange> plant_parameters = {};  ///< used instead of channels for a nonlinear plant
 
   bool operator==(const MismatchRanges&) const = default;
 };
@@ -97,14 +98,14 @@ inline constexpr auto kWords<DisturbancePlace> = word_list("cv", "mv", "several"
 inline constexpr auto kDisturbancePlaces = enumerators<DisturbancePlace>();
 
 /// Ranges of the random unmeasured disturbances: G_d = gain / (time_constant s + 1) driven by v. White v is
-/// normal with v_standard_deviation; a signal of another shape has the size at which y_d has the variance
-/// that white v gives it, so that the shape alone differs (docs/methods.md).
+/// normal with v_standard_deviation. A signal of another shape is scaled so that y_d has the same variance as
+/// with white v: only the shape differs (docs/methods.md).
 struct DisturbanceRanges {
-  std::vector<Eigen::Index> cvs = {};  ///< on which disturbances act that act on CVs; empty: all
+  std::vector<Eigen::Index> cvs = {};  ///< CVs that a disturbance of a CV may act on; empty: all
   Distribution gain = Distribution::uniform(0.1, 3.0);
   Distribution time_constant = Distribution::uniform(30.0, 300.0);
   double v_standard_deviation = 1.0;               ///< of the white normal sequence, held over a sample
-  SignalSequence sequence = SignalSequence::each;  ///< of the random numbers of v
+  SignalSequence sequence = SignalSequence::each;  ///< whether experiments share the random numbers of v
   /// Relative frequency of each of kDisturbanceShapes and of kDisturbancePlaces.
   std::array<double, kDisturbanceShapes.size()> signal_weight{1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   std::array<double, kDisturbancePlaces.size()> place_weight{1.0, 0.0, 0.0};

@@ -8,8 +8,8 @@
 
 namespace mpm {
 
-/// A source as methods name it, programs and files of verdicts write it, and tables of confusions count it:
-/// FaultSource and, for `other`, what the fault is about, if the method says so.
+/// The source of a fault as methods name it, as programs and files of verdicts write it, and as tables of
+/// confusions count it: FaultSource and, for `other`, the part of the loop at fault, if the method says so.
 enum class ToldSource : std::int8_t {
   none = 0,
   mpm = 1,
@@ -34,7 +34,7 @@ constexpr ToldSource told_source(FaultSource source, ToldSource about = ToldSour
   return source == FaultSource::other ? about : static_cast<ToldSource>(source);
 }
 
-/// What a fault around the model is about.
+/// The source that a method should name for this fault: sensor, valve or other.
 ToldSource told_source(const OtherFault& fault);
 
 }  // namespace mpm

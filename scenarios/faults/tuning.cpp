@@ -24,7 +24,7 @@ Eigen::VectorXd MpcOptions::*weights_of(TuningParameter parameter) {
   return &MpcOptions::move_suppression;
 }
 
-/// A slack weight of a CV without a soft limit weighs nothing.
+/// A slack weight has no effect on a CV without a soft limit.
 bool has_weight(const MpcOptions& controller, TuningParameter parameter, Eigen::Index i) {
   return (controller.*weights_of(parameter))(i) > 0.0 &&
          (parameter != TuningParameter::slack_weight || controller.has_soft_limit(i));

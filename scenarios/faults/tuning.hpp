@@ -15,7 +15,7 @@
 
 namespace mpm {
 
-/// The weight of the controller that is changed: one of an MV, or one of a CV.
+/// The weight of the controller that is changed; it belongs to an MV or a CV.
 enum class TuningParameter : std::int8_t {
   move_suppression = 0,  ///< of an MV
   target_weight = 1,     ///< of an MV with a target
@@ -23,20 +23,20 @@ enum class TuningParameter : std::int8_t {
   setpoint_weight = 3,   ///< of a CV with a setpoint
 };
 
-/// The name of the member of MpcOptions.
+/// Each word is the name of the member of MpcOptions.
 template <>
 inline constexpr auto kWords<TuningParameter> = word_list("move_suppression", "target_weight", "slack_weight",
                                                           "setpoint_weight");
 inline constexpr auto kTuningParameters = enumerators<TuningParameter>();
 
-/// Whether it is a weight of an MV; otherwise it is one of a CV.
+/// Is it a weight of an MV? Otherwise it is one of a CV.
 bool is_of_mv(TuningParameter parameter);
 
 /// One weight of the controller times a factor.
 struct TuningChange {
   TuningParameter parameter;
   Eigen::Index index;  ///< of the MV or CV
-  double factor;       ///< > 0, of the weight as the study writes it, whatever weight_convention says
+  double factor;       ///< > 0; multiplies the weight as the study writes it, whatever weight_convention says
 
   bool operator==(const TuningChange&) const = default;
 };
@@ -50,14 +50,14 @@ MpcOptions with_tuning(MpcOptions controller, const TuningChange& change);
 
 /// The controller whose S0 is used in an experiment with a bad tuning.
 enum class TuningSensitivity : std::int8_t {
-  current = 0,  ///< the one that runs: S0 is determined anew after a change of tuning (appendix A2)
-  design = 1,   ///< that of the study: nobody noticed the change
+  current = 0,  ///< the controller that runs: S0 is determined anew after a change of tuning (appendix A2)
+  design = 1,   ///< the controller of the study: nobody noticed the change
 };
 
 /// Ranges of the random changes of the tuning.
 struct TuningRanges {
-  /// Relative frequency of each parameter, in their order. One that the controller does not have is never
-  /// drawn.
+  /// Relative frequency of each parameter, in the order of TuningParameter. A parameter that the controller
+  /// does not have is never drawn.
   std::array<double, 4> parameter_weight{1.0, 1.0, 1.0, 1.0};
   Distribution factor = Distribution::log_uniform(0.05, 20.0);
   TuningSensitivity sensitivity = TuningSensitivity::current;

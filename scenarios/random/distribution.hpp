@@ -4,8 +4,8 @@
 
 namespace mpm {
 
-/// A distribution of one real number: the way a scenario says how a mismatch, a gain or a time constant is
-/// drawn. A value: it is checked when it is made and never changes afterwards.
+/// The distribution of one real number. A study uses it to say how a mismatch, a gain or a time constant is
+/// drawn. It is checked when it is made and never changes afterwards.
 ///
 /// | kind        | a    | b                  | density |
 /// |-------------|------|--------------------|---------|
@@ -22,13 +22,13 @@ class Distribution {
   static Distribution constant(double value);
   /// Uniform on [low, high). @throws InputError unless low < high and both are finite
   static Distribution uniform(double low, double high);
-  /// The logarithm is uniform. @throws InputError unless 0 < low < high and both are finite
+  /// A value whose logarithm is uniform. @throws InputError unless 0 < low < high and both are finite
   static Distribution log_uniform(double low, double high);
   /// Normal. @throws InputError unless both are finite and the standard deviation is positive
   static Distribution normal(double mean, double standard_deviation);
 
-  /// One draw. Every kind, the constant too, takes exactly one value from the stream, so that the draws after
-  /// this one do not depend on the kind.
+  /// Draws one value. Every kind, even the constant, takes exactly one value from the stream, so that later
+  /// draws do not depend on the kind.
   double sample(RandomStream& stream) const;
 
   /// Lower end of the support (-infinity for the normal distribution).

@@ -41,7 +41,7 @@ Product multiply(std::uint64_t a, std::uint64_t b) {
 }
 
 /// Phi^-1(p) for 0 < p <= 1/2. Plain double arithmetic: Boost would otherwise go through `long double`, which
-/// is slower and different on other processors.
+/// is slower and gives other results on other processors.
 double lower_normal_quantile(double p) {
   using namespace boost::math::policies;
   return -kSqrt2 * boost::math::erfc_inv(2.0 * p, policy<promote_double<false>>());
@@ -105,7 +105,7 @@ std::uint64_t RandomStream::below(std::uint64_t n) {
   }
   const std::uint64_t position = position_;
   Product product = multiply(bits(), n);
-  // 2^64 is no multiple of n in general: the lowest (2^64 mod n) values of the lower half are one too many.
+  // In general n does not divide 2^64: the lowest (2^64 mod n) values of the lower half are surplus.
   const std::uint64_t surplus = (std::numeric_limits<std::uint64_t>::max() - n + 1) % n;
   for (std::uint32_t repetition = 1; product.low < surplus; ++repetition) {
     product = multiply(value_at(position, repetition), n);
@@ -116,7 +116,7 @@ std::uint64_t RandomStream::below(std::uint64_t n) {
 double RandomStream::normal() {
   constexpr std::uint64_t kHalf = std::uint64_t{1} << 52U;
   const std::uint64_t k = bits() >> 11U;
-  // The midpoint never is 0 or 1. The upper half goes through the mirror image, which is exact; 1 - p is not.
+  // The midpoint is never 0 or 1. The upper half uses the mirror image of k, which is exact; 1 - p is not.
   const bool upper = k >= kHalf;
   const std::uint64_t mirrored = upper ? 2 * kHalf - 1 - k : k;
   const double quantile = lower_normal_quantile((static_cast<double>(mirrored) + 0.5) * kTwoToMinus53);

@@ -15,32 +15,32 @@ enum class StreamId : std::uint32_t {
   excitation = 4,          ///< steps of the measured disturbances and setpoints
   kind = 5,                ///< the kind of the experiment: mismatch, disturbance or both
   bootstrap = 6,           ///< resampling in the aggregates
-  audit = 7,               ///< which experiments are run again as a check
+  audit = 7,               ///< which steps of the controller are solved again as a check
   identification = 8,      ///< moves of the references in the records that T0 is identified from
   tuning = 9,              ///< which weight of the controller is changed, and by how much
-  mismatch_extent = 10,    ///< which further channels or parameters a mismatch has
-  disturbance_shape = 11,  ///< signal and place of the unmeasured disturbance, and those on further CVs
+  mismatch_extent = 10,    ///< further channels or parameters that a mismatch changes
+  disturbance_shape = 11,  ///< signal and place of the unmeasured disturbance, and its further CVs
   other_fault = 12,        ///< which instrument, valve, limit or MV is at fault, and by how much
   md_measurement = 13,     ///< noise on the measurement of an MD
   onset = 14,              ///< when the faults begin
-  impact = 15,             ///< how large the effect of the faults is to be
+  impact = 15,             ///< intended size of the effect of the faults
   suite_cell = 40,         ///< the seed of a cell of a suite
   noise_factor = 20,       ///< size of the measurement noise of an experiment
-  outliers = 21,           ///< which samples of the record are outliers, and of which size
+  outliers = 21,           ///< which samples of the record are outliers, and their sizes
   missing = 22,            ///< which samples of the record are missing
   md_noise = 23,           ///< variation of the measured disturbances
   dither = 24,             ///< test signals that are added to MVs
   bad_values = 25,         ///< which values of the record are bad
   candidate = 50,          ///< which logged candidate drives a disturbance, if one does
-  candidate_signals = 51,  ///< the first logged candidate; the numbers up to 59 are those of the others
+  candidate_signals = 51,  ///< the first logged candidate; the numbers up to 59 belong to the others
   blind_order = 70,        ///< order of the loops of a blind export
-  world = 80,              ///< the errors of the model of a world, the size and colour of its background
+  world = 80,              ///< the model errors of a world, and the size and colour of its background
   listed_steps = 82,       ///< times, order and sizes of the listed steps of one loop
-  background = 81,         ///< the disturbances that are always there, of one loop
-  valve_start = 83,        ///< where a sticking valve stands at first
-  background_swell = 84,   ///< when the disturbances that are always there are large, of one loop
+  background = 81,         ///< the background disturbances of one loop
+  valve_start = 83,        ///< initial position of a sticking valve
+  background_swell = 84,   ///< how the size of the background varies: range of a world, phase of a loop
   world_valves = 85,       ///< the characteristics of the valves of a world
-  /// Of the second disturbance of a named scenario; the following numbers are those of the third and so on.
+  /// The signal of the second disturbance of a named scenario; the third takes the next number, and so on.
   further_disturbance_signals = 0x1000,
 };
 
@@ -88,7 +88,7 @@ class RandomStream {
 
   /// Standard normal, by inversion of the distribution function at the midpoints (k + 1/2) 2^-53.
   ///
-  /// Inversion and not Box-Muller, because it maps one value to one variate: no half of a pair is kept
+  /// Inversion rather than Box-Muller, because it maps one value to one variate: no half of a pair is kept
   /// between calls, the variate grows with the underlying uniform value, and the central part needs
   /// arithmetic alone, no sine or cosine of the C library. The largest magnitude is about 8.29.
   double normal();
