@@ -32,7 +32,7 @@ AuditSummary summarise(std::span<const AuditedStep> steps) {
   for (const AuditedStep& step : steps) {
     if (!step.targets.same_status || !step.moves.same_status)
       ++summary.disagreements;
-    // fmax passes over the NaN of a problem without an answer.
+    // fmax ignores the NaN of a problem without an answer.
     summary.largest_target = std::fmax(summary.largest_target, step.targets.x);
     summary.largest_move = std::fmax(summary.largest_move, step.moves.x);
     summary.largest_objective =
@@ -62,7 +62,7 @@ void AuditSampler::observe(const Controller& controller) {
 
 Auditor::Auditor(const Study& study, const QpSolverFactory& unlimited) {
   const QpSolverFactory ipopt = with_time_limit(unlimited, study.controller.solver_time_limit);
-  // The controller makes the structures; its own solvers are never asked.
+  // The controller is needed for the structures of its problems; its own solvers never run.
   const Mpc controller(study.plant.G, study.mv_count(), study.controller, ipopt);
   if (const std::optional<SolvedQp> targets = controller.target_problem())
     targets_ = ipopt(std::make_shared<QpStructure>(targets->structure));

@@ -15,10 +15,10 @@
 
 namespace mpm {
 
-/// A problem and the answer to it that is to be checked.
+/// A problem and the answer that is to be checked.
 struct AuditedProblem {
-  /// False when the step did not pose it: no targets in the controller, or no moves after targets without an
-  /// answer.
+  /// False if the step did not pose this problem: the controller has no targets, or there were no moves
+  /// because the target problem had no answer.
   bool posed() const { return data.gradient.size() > 0; }
 
   QpData data;
@@ -46,13 +46,13 @@ struct AuditedStep {
   std::int64_t experiment = 0;
   std::int64_t step = 0;
   AuditDifference targets, moves;
-  double ipopt_kkt_residual = 0.0;  ///< the larger one of its two answers
+  double ipopt_kkt_residual = 0.0;  ///< the larger of its two answers
 };
 
-/// What a whole audit found. The largest differences are 0 without audited steps.
+/// What a whole audit found. Without audited steps the largest differences are 0.
 struct AuditSummary {
   std::int64_t steps = 0;
-  std::int64_t disagreements = 0;  ///< steps with another status than Ipopt's, in either problem
+  std::int64_t disagreements = 0;  ///< steps where the status of either problem is not Ipopt's
   double largest_target = 0.0;     ///< difference of a target, in MV units
   double largest_move = 0.0;       ///< difference of a planned move, in MV units
   double largest_objective = 0.0;  ///< relative, of either problem
@@ -79,8 +79,8 @@ class AuditSampler {
   std::vector<AuditSample> samples_;
 };
 
-/// Solves audited problems once more by Ipopt. It starts from the answer that it is to check, to save time,
-/// and uses nothing else of that answer; its own answer is certified by its own KKT residual.
+/// Solves audited problems again with Ipopt. To save time, Ipopt starts from the answer that it checks, but
+/// uses nothing else of it; its own answer is certified by its own KKT residual.
 class Auditor {
  public:
   Auditor(const Study& study, const QpSolverFactory& ipopt);
@@ -90,7 +90,7 @@ class Auditor {
  private:
   AuditDifference check(const AuditedProblem& problem, QpSolver* ipopt, double& kkt_residual) const;
 
-  std::unique_ptr<QpSolver> targets_, moves_;  ///< no target solver for a controller without targets
+  std::unique_ptr<QpSolver> targets_, moves_;  ///< targets_ is null for a controller without targets
 };
 
 }  // namespace mpm

@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-/// The form of a decoy of `cause`.
+/// The form of a decoy for the signal `cause`.
 DisturbanceSignal decoy_form(const DisturbanceSignal& cause) {
   if (std::holds_alternative<RandomWalk>(cause) || std::holds_alternative<Bursts>(cause))
     return cause;

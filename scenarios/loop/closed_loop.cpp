@@ -54,7 +54,7 @@ Trajectory empty_trajectory(const Study& study, const LoopSignals& signals) {
   return trajectory;
 }
 
-/// Do the soft limits have other values from this sample on?
+/// Do the soft limits of the study change at this sample?
 bool some_limit_moves(const Study& study, Eigen::Index k) {
   const std::vector<LimitStep>& steps = study.simulation.limit_steps;
   return std::any_of(steps.begin(), steps.end(), [k](const LimitStep& step) { return step.sample == k; });
@@ -66,8 +66,8 @@ void fail(Trajectory& trajectory, LoopFailure failure, std::string message) {
   trajectory.message = std::move(message);
 }
 
-/// Puts the plant at rest. Whether it can rest there depends on what differs from the model in this loop:
-/// that is an outcome of the loop.
+/// Puts the plant at rest. Whether it can rest there depends on how it differs from the model in this loop:
+/// if it cannot, the loop fails.
 void begin(Plant& plant, const Eigen::VectorXd& input, Trajectory& trajectory) {
   try {
     plant.reset(input);
@@ -87,15 +87,15 @@ class Surroundings {
         curvature_(signals.valve_curvature),
         schedule_(study) {}
 
-  /// The MVs where the loop starts: every valve passes them as they are.
+  /// Takes the MVs at which the loop starts: every valve passes these unchanged.
   void start(const Eigen::Ref<const Eigen::VectorXd>& u) {
     start_offset_ = Eigen::VectorXd::Zero(curvature_.size());
     for (Eigen::Index mv = 0; mv < curvature_.size(); ++mv)
       start_offset_(mv) = bend(mv, u(mv));
   }
 
-  /// Before the controller decides on sample k: what is off, and its soft limits, where they move. `before`
-  /// are the MVs that act until then.
+  /// Tells the controller, before it decides on sample k, which variables are off and what its soft limits
+  /// are, if any of these change. `before` are the MVs that act until then.
   void prepare(Eigen::Index k, const Eigen::Ref<const Eigen::VectorXd>& before, Controller& controller) {
     const bool switches = schedule_.go_on(k, before);
     if (switches)
@@ -110,11 +110,11 @@ class Surroundings {
     controller.set_cv_soft(limits);
   }
 
-  /// The MVs `u` with those that are off where they are held.
+  /// Sets the MVs in `u` that are off to the values at which they are held.
   void hold_off(Eigen::Ref<Eigen::VectorXd> u) const { schedule_.off().hold(u); }
 
-  /// `u` is what the controller asks for at sample k; it becomes what the record has, and `acting` what the
-  /// plant gets.
+  /// Passes the MVs of sample k to the plant: `u` comes in as the controller asks for it and goes out as the
+  /// record shows it; `acting` becomes what the plant gets.
   void pass(Eigen::Index k, const Eigen::Ref<const Eigen::VectorXd>& before, Eigen::Ref<Eigen::VectorXd> u,
             Eigen::Ref<Eigen::VectorXd> acting) {
     if (faults_.hold && k >= faults_.hold->sample)
@@ -133,7 +133,7 @@ class Surroundings {
   }
 
  private:
-  /// What the characteristic of the valve adds.
+  /// What the characteristic of the valve adds to the MV.
   double bend(Eigen::Index mv, double u) const {
     const Limits& hard = study_.controller.mv_hard;
     const double a = hard.lower(mv), b = hard.upper(mv);
@@ -149,10 +149,10 @@ class Surroundings {
   std::unique_ptr<ValveStem> valve_;
 };
 
-/// The rows of the record of one loop, where they are at other times than the samples.
+/// Collects the rows of the record of one loop, if their times are not those of the samples.
 class RowRecorder {
  public:
-  /// `plant` has the outputs of the rows, if there are any.
+  /// `plant` gives the outputs at the times of the rows, if `has_rows`.
   RowRecorder(const Study& study, const LoopSignals& signals, const Plant& plant, bool has_rows)
       : study_(study), faults_(signals.faults), added_(signals.y_rows), plant_(plant) {
     if (has_rows && added_.size() > 0) {
@@ -161,13 +161,13 @@ class RowRecorder {
     }
   }
 
-  /// Before the plant goes on from sample k.
+  /// Keeps the output of sample k; to be called before the plant goes on.
   void note(Eigen::Index k) {
     if (output_.size() > 0)
       output_.col(k) = plant_.output();
   }
 
-  /// An analyser shows what it found, and rows of it are those of what it shows.
+  /// Writes the rows into `loop`. The rows of a CV with an analyser are those of the values that it shows.
   void finish(Trajectory& loop) {
     if (output_.size() == 0)
       return;
@@ -190,7 +190,7 @@ class RowRecorder {
   }
 
  private:
-  /// Rows whose time is after that from which the sensor is stuck show what it is stuck at.
+  /// Sets the rows after the time at which the sensor sticks to the value at which it is stuck.
   void hold_stuck(Trajectory& loop) const {
     const auto [cv, sample] = *faults_.stuck;
     const double shift = row_time(study_.record, VariableSort::cv, cv).shift;
@@ -206,7 +206,7 @@ class RowRecorder {
   Eigen::MatrixXd output_;  ///< ny x (N + 1)
 };
 
-/// The faults of the loop, at the sample of the onset.
+/// The other fault of the draw as a fault of the loop, from the sample of the onset on.
 LoopFaults loop_faults(const ExperimentDraw& draw) {
   LoopFaults faults;
   if (!draw.other)
@@ -216,7 +216,7 @@ LoopFaults loop_faults(const ExperimentDraw& draw) {
   if (effect == FaultEffect::valve)
     faults.valve = {fault.variable, fault, draw.onset.sample};
   if (faults.valve && draw.onset.sample > 0)
-    faults.valve->fault.start = 0.0;  // until then it was where it was asked to
+    faults.valve->fault.start = 0.0;  // until then it followed its signal
   if (effect == FaultEffect::sensor_stuck)
     faults.stuck = {fault.variable, draw.onset.sample};
   if (effect == FaultEffect::hold)
@@ -226,7 +226,7 @@ LoopFaults loop_faults(const ExperimentDraw& draw) {
   return faults;
 }
 
-/// a(k) of the onset over the record.
+/// Onset::share(k) over the record.
 Eigen::VectorXd shares(const Onset& onset, Eigen::Index samples) {
   Eigen::VectorXd a(samples);
   for (Eigen::Index k = 0; k < samples; ++k)
@@ -234,9 +234,9 @@ Eigen::VectorXd shares(const Onset& onset, Eigen::Index samples) {
   return a;
 }
 
-/// What is added to the plant at the times of the rows: responses to disturbances as they are, background and
-/// errors of sensors along straight lines, and the noise of the sample, of which one measurement has as much
-/// as another, and a mean as much as a measurement.
+/// What is added to the outputs of the plant at the times of the rows: the exact responses to disturbances,
+/// background and errors of sensors by linear interpolation, and the noise of the sample. Every row has noise
+/// of the same size, be it a measurement or a mean.
 Eigen::MatrixXd added_to_rows(const Study& study, const ExperimentDraw& draw, const LoopSignals& signals) {
   Eigen::MatrixXd rows = unmeasured_disturbances_of_rows(study, draw);
   const Eigen::MatrixXd lines = signals.y_d - unmeasured_disturbances(study, draw);
@@ -247,7 +247,7 @@ Eigen::MatrixXd added_to_rows(const Study& study, const ExperimentDraw& draw, co
   return rows;
 }
 
-/// The outputs later by these samples, one a row.
+/// The plant with each output delayed by its number of samples.
 TransferMatrix delayed(TransferMatrix plant, const Eigen::VectorXd& delay, double sample_time) {
   for (Eigen::Index row = 0; row < delay.size(); ++row)
     for (Eigen::Index col = 0; col < plant.cols() && delay(row) > 0.0; ++col)
@@ -256,8 +256,8 @@ TransferMatrix delayed(TransferMatrix plant, const Eigen::VectorXd& delay, doubl
   return plant;
 }
 
-/// The plant of an experiment, whose outputs are sampled in this way; `delay` has a part of a sample for each
-/// CV, or is empty for an instrument of the controller.
+/// The plant of an experiment with outputs that are sampled in this way. `delay` has a fraction of a sample
+/// for each CV; it is empty for the outputs that the controller measures.
 std::unique_ptr<Plant> plant_as(const Study& study, const ExperimentDraw& draw, OutputSampling sampling,
                                 const Eigen::VectorXd& delay) {
   const double Ts = study.controller.sample_time;

@@ -23,7 +23,7 @@ struct SolverStatistics {
   std::int64_t steps = 0;
   std::int64_t iterations = 0;
   std::int64_t fallbacks = 0;         ///< problems whose answer is Ipopt's (CertifiedSolver)
-  double largest_kkt_residual = 0.0;  ///< NaN: for solutions without a certificate
+  double largest_kkt_residual = 0.0;  ///< NaN if solutions have no certificate
 
   void add(const SolverStatistics& other);
 };
@@ -34,7 +34,7 @@ enum class LoopFailure {
   solver,           ///< it gave no answer
   plant,            ///< it could not be integrated
   no_steady_state,  ///< the plant cannot rest where the loop begins
-  controller,       ///< the program that is the controller gave no move
+  controller,       ///< the external controller program gave no move
 };
 
 template <>
@@ -58,15 +58,15 @@ struct Trajectory {
   ControlStatus status = ControlStatus::ok;
   Eigen::Index samples_done = 0;  ///< columns after these are zero when the status is not `ok`
   Eigen::MatrixXd y, u, u_target, d, y_set;
-  /// The CVs at the times of the rows of the record, noise included; empty where these are the samples.
+  /// The CVs at the times of the rows of the record, noise included; empty if these are the times of the
+  /// samples.
   Eigen::MatrixXd y_sampled = {};
   SolverStatistics solver;
-  LoopFailure failure = LoopFailure::none;  ///< another one if and only if the status is `failed`
+  LoopFailure failure = LoopFailure::none;  ///< not `none` if and only if the status is `failed`
   std::string message = {};                 ///< what failed, for people; empty when nothing did
 };
 
-/// Differences of a loop from what the controller assumes, besides the signals: at most one of
-/// each, from a sample on.
+/// Faults of a loop besides those in its signals: at most one of each sort, from its sample on.
 struct LoopFaults {
   struct Valve {
     Eigen::Index mv;
@@ -100,15 +100,15 @@ struct LoopSignals {
   Eigen::MatrixXd noise;    ///< added to the measurements, ny x N
   Eigen::MatrixXd y_d;      ///< unmeasured disturbances, added to the outputs, ny x N
   Eigen::MatrixXd y_set{};  ///< setpoints, ny x N; empty: they stay as they are at the start
-  /// Unmeasured disturbances that act within the plant: its inputs after MVs and MDs, from sample k on, one
-  /// column a sample. Empty: they stay zero.
+  /// Unmeasured disturbances that act within the plant: its inputs after the MVs and MDs, one column a
+  /// sample; column k acts from sample k on. Empty: they stay zero.
   Eigen::MatrixXd within_plant{};
   /// Test signals that are added to the moves of the controller, nu x N; empty: none.
   Eigen::MatrixXd dither{};
   Eigen::MatrixXd u_d{};         ///< added to the MVs on their way to the plant, nu x N; empty: nothing
-  Eigen::MatrixXd d_measured{};  ///< MDs as they are measured, nd x N; empty: d
+  Eigen::MatrixXd d_measured{};  ///< MDs as they are measured, nd x N; empty: as `d`
   LoopFaults faults{};
-  Eigen::VectorXd valve_curvature{};  ///< of each MV (WorldRanges), nu; empty: valves are straight
+  Eigen::VectorXd valve_curvature{};  ///< of each MV (WorldRanges), nu; empty: valves are linear
   /// What is added to the outputs of the plant at the times of the rows of the record, ny x N; empty: the
   /// loop has no such rows.
   Eigen::MatrixXd y_rows{};
@@ -117,26 +117,27 @@ struct LoopSignals {
 /// Called after each step with the controller, whose two problems and answers it may look at.
 using StepObserver = std::function<void(const Controller& controller)>;
 
-/// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study, from
-/// the steady state of the nominal model at zero disturbances that Controller::nominal_target() gives for the
-/// first setpoints. The soft limits are those of soft_limits() at each sample.
+/// Runs the controller of the study on `plant`, whose inputs are the MVs and then the MDs of the study. The
+/// loop starts at the steady state of the nominal model at zero disturbances that
+/// Controller::nominal_target() gives for the first setpoints. The soft limits are those of soft_limits() at
+/// each sample.
 ///
-/// `[[simulation.off]]` switches variables off from the sample of a table on: an MV without a level keeps its
-/// last value, and has no dither (Controller::set_off()).
+/// `[[simulation.off]]` switches variables off, each from the sample of its table on. An MV that is off has
+/// no dither; without a level it keeps its last value (Controller::set_off()).
 ///
-/// The move of the controller plus the dither, within the hard limits of the MV, acts on the plant and stands
-/// in the record. The controller knows it, as in an announced plant test: its model has the MVs that act, and
-/// it plans without the dither.
+/// The move of the controller plus the dither, within the hard limits of the MV, acts on the plant and is in
+/// the record. The controller knows the dither, as in an announced plant test: its model gets the MVs that
+/// act, but it plans without the dither.
 ///
-/// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant
-/// cannot be integrated (status `failed`), and does not begin when the plant has no steady state there
-/// (`failed` as well). Throws InputError when a signal does not have the shape that the study asks for, or
-/// the plant has another sample time, other outputs or fewer inputs.
+/// Stops at the first sample whose problem is infeasible or cannot be solved, or over which the plant cannot
+/// be integrated (status `failed`). Does not begin if the plant has no steady state at the start (`failed` as
+/// well). Throws InputError if a signal does not have the shape that the study asks for, or if the plant has
+/// another sample time, other outputs or fewer inputs.
 ///
-/// A controller on a linear model thinks in deviations: a nonlinear plant goes in as a DeviationPlant.
+/// A controller with a linear model works with deviations: pass a nonlinear plant as a DeviationPlant.
 ///
-/// A `recorder` is the same plant as the historian samples it (record_plant()): it has the inputs of the
-/// plant, and its outputs, which the controller never sees, are the rows of the record.
+/// A `recorder` is the same plant, sampled as by the historian (record_plant()). It gets the inputs of the
+/// plant; its outputs are the rows of the record, and the controller never sees them.
 Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& signals,
                            const QpSolverFactory& factory, const StepObserver& observer = {},
                            Plant* recorder = nullptr);
@@ -145,16 +146,16 @@ Trajectory run_closed_loop(const Study& study, Plant& plant, const LoopSignals& 
 Trajectory run_closed_loop(const Study& study, const TransferMatrix& plant, const LoopSignals& signals,
                            const QpSolverFactory& factory, const StepObserver& observer = {});
 
-/// The plant of one experiment: that of its world, with its mismatches or changed parameters from the onset
-/// on.
+/// The plant of one experiment: the plant of its world, with the mismatches or changed parameters of the
+/// experiment from the onset on.
 std::unique_ptr<Plant> experiment_plant(const Study& study, const ExperimentDraw& draw);
 
-/// The same plant, whose outputs are those at the times of the rows of the record, up to whole samples; null
-/// where the plant itself has them.
+/// The same plant with outputs at the times of the rows of the record, apart from shifts by whole samples;
+/// null if the plant itself has these outputs.
 std::unique_ptr<Plant> record_plant(const Study& study, const ExperimentDraw& draw);
 
-/// The signals that act on the loop of one experiment, from (study, draw) alone; `y_d` with the errors of its
-/// sensors.
+/// The signals that act on the loop of one experiment, from (study, draw) alone; `y_d` includes the errors of
+/// its sensors.
 LoopSignals experiment_signals(const Study& study, const ExperimentDraw& draw);
 
 /// The closed loop of one experiment: its controller, its plant and its signals, from (study, draw) alone.

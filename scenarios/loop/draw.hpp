@@ -7,13 +7,13 @@
 
 namespace mpm {
 
-/// Experiment `index` of the study, with the scales 1: a pure function of (study, seed, index). In a random
-/// experiment with mismatch and disturbance the first ones of both are on the same CV, as (6.23) needs,
-/// unless the disturbance is on an MV or the plant is nonlinear. Throws InputError for a negative index, and,
-/// in a study of named scenarios, for one that belongs to none.
+/// Draws experiment `index` of the study, with the scales 1: a pure function of (study, seed, index). In a
+/// random experiment with mismatch and disturbance, the first mismatch and the first disturbance are on the
+/// same CV, as (6.23) needs, unless the disturbance is on an MV or the plant is nonlinear. Throws InputError
+/// for a negative index and, in a study of named scenarios, for an index without a scenario.
 ExperimentDraw draw_experiment(const Study& study, std::int64_t index);
 
-/// The experiment `draw`, which has the scales 1, with these.
+/// The experiment `draw`, which has the scales 1, with its faults scaled by `scales`.
 ExperimentDraw with_scales(const Study& study, ExperimentDraw draw, const FaultScales& scales);
 
 /// The basis case, without a fault. In a world it is the benchmark that the methods know, with noise and

@@ -11,7 +11,7 @@
 namespace mpm {
 namespace {
 
-/// Other times for the steps of one variable, ascending and none twice.
+/// Draws new times for the steps of one variable, ascending and without duplicates.
 std::vector<int> other_times(const std::vector<int>& listed, int samples, RandomStream& stream) {
   const int earliest = listed.front() / 2, latest = (listed.back() + samples) / 2;
   std::vector<int> times;
@@ -20,12 +20,12 @@ std::vector<int> other_times(const std::vector<int>& listed, int samples, Random
   std::sort(times.begin(), times.end());
   for (std::size_t i = 1; i < times.size(); ++i)
     times[i] = std::max(times[i], times[i - 1] + 1);
-  for (std::size_t i = times.size(); i-- > 0;)  // what was pushed over the end goes back
+  for (std::size_t i = times.size(); i-- > 0;)  // times that were pushed over the end go back
     times[i] = std::min(times[i], samples - static_cast<int>(times.size() - i));
   return times;
 }
 
-/// The steps with other times and in another order, variable by variable; `level` draws the size of one.
+/// The steps with new times and in a new order, variable by variable; `level` draws the size of a step.
 template <class Step, class Variable, class Level>
 std::vector<Step> redrawn(const std::vector<Step>& steps, int samples, Variable variable, Level level,
                           RandomStream& stream) {

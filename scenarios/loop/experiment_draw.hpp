@@ -10,8 +10,8 @@
 
 namespace mpm {
 
-/// The number of the world without errors of the model and without background (scenarios/loop/world.hpp):
-/// that of a study without [world], and of the nominal loop of one that has it.
+/// The number of the world without errors of the model and without background (scenarios/loop/world.hpp). The
+/// loops of a study without [world] are in this world, and so is the nominal loop of every study.
 inline constexpr int kExactWorld = -1;
 
 /// A CV that an experiment affects, and the fault that affects it.
@@ -20,8 +20,8 @@ struct AffectedCv {
   FaultSource by;  ///< mpm, ud, or mpm_ud for both; none: another fault
 };
 
-/// By how much the faults of an experiment are larger than they were drawn, in a study that asks for faults
-/// of a given effect.
+/// How much larger the faults of an experiment are than drawn, in a study that asks for faults of a given
+/// effect.
 ///
 /// | member      | of                                  | what becomes of the drawn value x        |
 /// |-------------|-------------------------------------|------------------------------------------|
@@ -38,35 +38,36 @@ struct FaultScales {
 };
 
 /// What one experiment does to the loop: drawn at random, with a mismatch, a disturbance, both, another fault
-/// or a change of the tuning, or a named scenario of the study. A mismatch may reach over several channels
-/// and a disturbance over several CVs (MismatchExtent, DisturbancePlace).
+/// or a change of the tuning, or a named scenario of the study. A mismatch may change several channels and a
+/// disturbance may act on several CVs (MismatchExtent, DisturbancePlace).
 struct ExperimentDraw {
   std::int64_t index = 0;
   ExperimentKind kind = ExperimentKind::healthy;
   std::vector<Mismatch> mismatches;
   std::vector<Disturbance> disturbances;
-  bool named = false;  ///< the scenario number `index` of the study
-  /// The CVs that a diagnosis should find, when the study says it; otherwise those with a fault.
+  bool named = false;  ///< it is scenario `index` of the study
+  /// The CVs that a diagnosis should find, if the study names them; otherwise those with a fault.
   std::optional<std::vector<Eigen::Index>> affected_cvs = {};
-  std::vector<ParameterChange> parameters = {};  ///< of a nonlinear plant; a mismatch, too
+  std::vector<ParameterChange> parameters = {};  ///< changed in a nonlinear plant; they count as a mismatch
   std::optional<TuningChange> tuning = {};       ///< of the controller; no fault of model or plant
-  std::optional<OtherFault> other = {};          ///< around the model, which is right
-  Onset onset = {};                              ///< of all faults but that of the tuning
-  FaultScales scales = {};                       ///< those of the sizes above
+  std::optional<OtherFault> other = {};          ///< outside of the model, which is right
+  Onset onset = {};                              ///< of all faults except the tuning
+  FaultScales scales = {};                       ///< by which the sizes above were scaled
   double noise_factor = 1.0;  ///< of the measurement noise (NoiseOptions::factor); no fault either
-  /// Whose noise and background the loop has, instead of its own: of loops that differ in nothing else.
+  /// The index whose noise and background the loop has instead of its own; for loops of one experiment that
+  /// differ in nothing else.
   std::optional<std::int64_t> noise_index = {};
-  int world = kExactWorld;  ///< in which it takes place
+  int world = kExactWorld;  ///< in which the experiment takes place
 
-  /// The CVs that are affected, in their order. A CV that has no fault of its own is affected by what is
-  /// wrong in the experiment.
+  /// The affected CVs, in their order. A CV without a fault of its own is affected by all faults of the
+  /// experiment.
   std::vector<AffectedCv> affected() const;
-  /// The CV that is affected; -1 when it is none, or more than one.
+  /// The affected CV; -1 if there is none, or more than one.
   Eigen::Index true_cv() const;
   /// The same experiment with the mismatches alone, and with the disturbances alone.
   ExperimentDraw mismatch_alone() const;
   ExperimentDraw disturbance_alone() const;
-  /// The same loop, under the same noise, in which nothing is wrong.
+  /// The same loop under the same noise, without any fault.
   ExperimentDraw without_faults() const;
 };
 
@@ -77,7 +78,7 @@ inline constexpr std::int64_t kRepeatIndex = -2;
 /// The index under which a sequence that all experiments share is drawn (SignalSequence::shared).
 inline constexpr std::int64_t kSharedIndex = -3;
 
-/// The index under which the benchmark of a world draws its noise; kBasisIndex for the exact one.
+/// The index under which the benchmark of a world draws its noise; kBasisIndex for the exact world.
 constexpr std::int64_t basis_index(int world) {
   return world == kExactWorld ? kBasisIndex : kSharedIndex - 1 - world;
 }

@@ -45,12 +45,12 @@ double possible_shift(double shift, const Distribution& distribution, double dea
   return -dead_time + quantile * (distribution.maximum() + dead_time);
 }
 
-/// A channel without dynamics gets a lag of the size of a sample.
+/// The residence time of a channel, at least a sample: a channel without dynamics gets a lag of that size.
 double residence_time(const Study& study, const TransferFunction& channel) {
   return std::max(std::abs(channel.residence_time()), study.controller.sample_time);
 }
 
-/// Of a channel without time constants it is the gain in their place.
+/// Draws a mismatch of this parameter; if the channel has no time constant to change, of its gain.
 Mismatch mismatch_of(const Study& study, ChannelPlace place, MismatchParameter parameter,
                      RandomStream& stream) {
   const MismatchRanges& ranges = study.mismatch;
@@ -84,7 +84,7 @@ Mismatch mismatch_of(const Study& study, ChannelPlace place, MismatchParameter p
   return {place.first, place.second, parameter, value};
 }
 
-/// The mismatches that reach as far as this from the first one.
+/// All mismatches of an experiment with this extent, from the first one.
 std::vector<Mismatch> reaching(const Study& study, MismatchExtent extent, const Mismatch& first,
                                RandomStream& stream) {
   std::vector<Mismatch> mismatches;
@@ -130,13 +130,13 @@ void draw_plant_parameter(const Study& study, ExperimentDraw& draw, RandomStream
 
 // --- Disturbances ---
 
-/// The share of the record at which a step or a ramp begins.
+/// A step or a ramp begins between these shares of the record.
 constexpr double kEarliest = 0.1, kLatest = 0.6;
-/// The period of a sine: from so many samples to this share of the record.
+/// The period of a sine lies between this number of samples and this share of the record.
 constexpr double kShortestPeriod = 8.0, kLongestPeriod = 0.25;
 constexpr std::uint64_t kMostCvs = 3;  // of one disturbance
 
-/// A signal of this shape and of no particular size.
+/// A signal of this shape, whose size is not yet set (of_equal_effect()).
 DisturbanceSignal signal_of_shape(const Study& study, DisturbanceShape shape, RandomStream& stream) {
   const double N = study.simulation.samples;
   const double Ts = study.controller.sample_time;
@@ -161,8 +161,8 @@ DisturbanceSignal signal_of_shape(const Study& study, DisturbanceShape shape, Ra
   return WhiteNoise{};
 }
 
-/// The standard deviation of y_d = G_d v with white v over all times, G_d the first-order one of the
-/// disturbance behind a hold: |gain| sigma sqrt((1 - a) / (1 + a)), a = e^(-Ts / time constant).
+/// The stationary standard deviation of y_d = G_d v for white v held over a sample, with the first-order G_d
+/// of the disturbance: |gain| sigma sqrt((1 - a) / (1 + a)), a = e^(-Ts / time constant).
 double white_deviation(const Study& study, const Disturbance& disturbance) {
   const double a = std::exp(-study.controller.sample_time / disturbance.time_constant);
   return std::abs(disturbance.gain) * study.disturbance.v_standard_deviation *
@@ -173,13 +173,14 @@ double standard_deviation_of(const Eigen::RowVectorXd& y) {
   return std::sqrt((y.array() - y.mean()).square().mean());
 }
 
-/// The signal at the size at which y_d of the first disturbance has the deviation that white v gives it.
+/// The signal of the first disturbance, scaled so that y_d has the standard deviation that white v would give
+/// it.
 DisturbanceSignal of_equal_effect(const Study& study, std::int64_t index, const Disturbance& first) {
   const double deviation = standard_deviation_of(disturbance_output(study, index, first));
   return deviation > 0.0 ? scaled(first.signal, white_deviation(study, first) / deviation) : first.signal;
 }
 
-/// Onto the other CVs of a disturbance of several.
+/// Extends the first disturbance to one or two other CVs.
 void reach_further(const Study& study, ExperimentDraw& draw, RandomStream& stream) {
   std::vector<Eigen::Index> others = disturbance_cvs(study);
   std::erase(others, draw.disturbances.front().cv);
@@ -202,7 +203,7 @@ std::vector<Eigen::Index> cvs_with_channel(const Study& study, Eigen::Index inpu
   return cvs;
 }
 
-/// The experiment affects these CVs besides those that it is already said to affect.
+/// Adds these CVs to those that the experiment affects.
 void add_affected(ExperimentDraw& draw, std::vector<Eigen::Index> cvs) {
   for (const AffectedCv& affected : draw.affected())
     cvs.push_back(affected.cv);
@@ -218,7 +219,8 @@ std::vector<Eigen::Index> cvs_of(const std::vector<Disturbance>& disturbances) {
   return cvs;
 }
 
-/// Onto an MV instead of the CV, at the size at which the CV with the largest gain sees the drawn one.
+/// Moves the disturbance from the CV to an MV, at the size at which the CV with the largest gain from this MV
+/// sees the drawn size.
 void move_to_mv(const Study& study, ExperimentDraw& draw, RandomStream& stream) {
   const Eigen::Index mv = draw_from(mv_channels(study), stream).second;
   Disturbance& disturbance = draw.disturbances.front();
@@ -244,7 +246,7 @@ bool is_limited(const Study& study, Eigen::Index cv) {
          std::isfinite(study.controller.cv_soft.upper(cv));
 }
 
-/// Upper minus lower where both are there.
+/// Upper minus lower limit; 1 if a limit is missing.
 double width(const Limits& limits, Eigen::Index variable) {
   const double range = limits.upper(variable) - limits.lower(variable);
   return std::isfinite(range) && range > 0.0 ? range : 1.0;

@@ -13,7 +13,8 @@
 namespace mpm {
 namespace {
 
-/// Three draws for each sample, an outlier or not: another share changes no other outlier.
+/// Takes three draws for each sample, whether it is an outlier or not: another share leaves all other
+/// outliers as they are.
 void add_outliers(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
   RandomStream stream = experiment_stream(study, index, StreamId::outliers);
   for (Eigen::Index k = 0; k < y.cols(); ++k)
@@ -33,8 +34,8 @@ void quantise(const Study& study, Eigen::MatrixXd& y) {
   }
 }
 
-/// Spells of a Markov chain of two states, of `length` samples in the mean and over `share` of the samples:
-/// the share in the long run is also the probability that the record begins within one.
+/// The spells of a Markov chain of two states. Their mean length is `length` samples and they take `share` of
+/// the samples in the long run, which is also the probability that the record begins within a spell.
 std::vector<bool> spells(double share, double length, Eigen::Index samples, RandomStream& stream) {
   const double ends = 1.0 / length;
   const double begins = share * ends / (1.0 - share);
@@ -55,7 +56,7 @@ void make_gaps(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
   }
 }
 
-/// A record that begins with bad values is stuck at its first one.
+/// If a record begins with bad values, they are stuck at its first sample.
 void make_bad(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
   const RecordOptions& record = study.record;
   RandomStream stream = experiment_stream(study, index, StreamId::bad_values);
@@ -71,8 +72,8 @@ void make_bad(const Study& study, std::int64_t index, Eigen::MatrixXd& y) {
   }
 }
 
-/// Each run of samples between two gaps, the longest there is, through what a historian does with `deviation`
-/// standard deviations of the noise.
+/// Applies `passed`, with `deviation` standard deviations of the noise, to each run of samples between two
+/// gaps.
 void pass_runs(const Study& study, double deviation,
                Eigen::RowVectorXd (*passed)(const Eigen::Ref<const Eigen::RowVectorXd>&, double),
                Eigen::MatrixXd& y) {
@@ -88,7 +89,7 @@ void pass_runs(const Study& study, double deviation,
     }
 }
 
-/// The straight line from sample `a` to sample `b`, in between.
+/// Puts the samples between `a` and `b` onto the straight line from sample `a` to sample `b`.
 void draw_line(Eigen::RowVectorXd& signal, Eigen::Index a, Eigen::Index b) {
   for (Eigen::Index k = a + 1; k < b; ++k)
     signal(k) = signal(a) + (signal(b) - signal(a)) * static_cast<double>(k - a) / static_cast<double>(b - a);
@@ -127,7 +128,7 @@ Eigen::RowVectorXd reported(const Eigen::Ref<const Eigen::RowVectorXd>& signal, 
 }
 
 Eigen::RowVectorXd filled(Eigen::RowVectorXd signal, GapFill fill) {
-  Eigen::Index before = -1;  // the last sample that is there
+  Eigen::Index before = -1;  // the last sample that is no gap
   for (Eigen::Index k = 0; k < signal.size() && fill != GapFill::none; ++k) {
     if (std::isnan(signal(k)))
       continue;
@@ -146,7 +147,7 @@ Eigen::RowVectorXd filled(Eigen::RowVectorXd signal, GapFill fill) {
 
 namespace {
 
-/// MVs and MDs are held from sample to sample.
+/// Shifts MVs or MDs, which are held from sample to sample.
 void shift_held(const RecordOptions& record, VariableSort sort, Eigen::MatrixXd& signals) {
   for (Eigen::Index i = 0; i < signals.rows() && !record.shifts_of(sort).empty(); ++i)
     signals.row(i) = rows_of_held(row_time(record, sort, i), Eigen::RowVectorXd(signals.row(i)));

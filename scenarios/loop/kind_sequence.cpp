@@ -13,7 +13,7 @@
 namespace mpm {
 
 KindSequence::KindSequence(const ExperimentCounts& counts) {
-  // A kind without experiments is never behind, so that adding one to the list changes no other study.
+  // A kind without experiments is never behind, so that a new kind in the list changes no old study.
   constexpr std::array kinds{ExperimentKind::mpm,     ExperimentKind::ud,     ExperimentKind::mpm_ud,
                              ExperimentKind::healthy, ExperimentKind::tuning, ExperimentKind::other};
   std::array<std::pair<ExperimentKind, int>, kinds.size()> wanted;

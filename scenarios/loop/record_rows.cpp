@@ -16,7 +16,8 @@ double sample_of(const Signal& signal, Eigen::Index k) {
   return signal(std::clamp<Eigen::Index>(k, 0, signal.size() - 1));
 }
 
-/// At time t of sample k, samples; its mean over a part of the sample is its value in the middle.
+/// The value at time t, in samples, within sample k. The mean over a part of the sample is the value in the
+/// middle of that part.
 double value_in(const Signal& signal, Eigen::Index k, double t, double share) {
   const double a = sample_of(signal, k);
   return a + share * (t - static_cast<double>(k)) * (sample_of(signal, k + 1) - a);
@@ -26,7 +27,7 @@ double value_at(const Signal& signal, double t, double share) {
   return value_in(signal, static_cast<Eigen::Index>(std::floor(t)), t, share);
 }
 
-/// Over [t - 1, t), which lies in two samples.
+/// The mean over [t - 1, t), which lies in two samples.
 double mean_before(const Signal& signal, double t, double share) {
   const double border = std::floor(t - 1.0) + 1.0;
   const auto k = static_cast<Eigen::Index>(border);

@@ -64,7 +64,7 @@ double laplace_quantile(double p) {
   return std::copysign(std::log(2.0 * std::min(p, 1.0 - p)) / std::numbers::sqrt2, p - 0.5);
 }
 
-/// An innovation with variance 1. Each form takes one value of the stream, at the same quantile.
+/// An innovation with variance 1. Each distribution takes one value of the stream, at the same quantile.
 double innovation(NoiseDistribution distribution, RandomStream& stream) {
   if (distribution == NoiseDistribution::normal)
     return stream.normal();
@@ -72,7 +72,7 @@ double innovation(NoiseDistribution distribution, RandomStream& stream) {
   return distribution == NoiseDistribution::student ? student_quantile(p) : laplace_quantile(p);
 }
 
-/// What the value of a signal depends on.
+/// What the values of a signal depend on, besides its form.
 struct SignalSetting {
   double standard_deviation, sample_time;
   Eigen::Index samples;
@@ -142,7 +142,7 @@ Eigen::RowVectorXd through_model(const Disturbance& disturbance, double Ts, cons
   return simulate(TransferMatrix{{model_of(disturbance)}}, Ts, v);
 }
 
-/// The same at the times of rows.
+/// The same at the times of the rows of a record.
 Eigen::RowVectorXd through_model(const Disturbance& disturbance, double Ts, const Eigen::RowVectorXd& v,
                                  const RowTime& rows) {
   if (disturbance.model == DisturbanceModel::direct)
@@ -189,7 +189,8 @@ Eigen::RowVectorXd values(const Study& study, const ExperimentDraw& draw, std::s
                        driving_values(study, draw, number));
 }
 
-/// The disturbances that `place` puts in a row, none for those that are elsewhere.
+/// The sum of the disturbances of each row. `place` gives the row of a disturbance; none if it acts
+/// elsewhere.
 template <class Place>
 Eigen::MatrixXd sum_of_disturbances(const Study& study, const ExperimentDraw& draw, Eigen::Index rows,
                                     Place place) {
@@ -220,7 +221,7 @@ Eigen::MatrixXd measured_disturbances(const Study& study, std::int64_t index) {
 Eigen::MatrixXd dither(const Study& study) {
   if (study.simulation.dither.empty())
     return {};
-  // A designed signal, not a random one of the study: that of the seed 0 for all.
+  // A designed signal, not a random one of the study: every study has that of seed 0.
   RandomStream stream(0, static_cast<std::uint64_t>(kBasisIndex), StreamId::dither);
   Eigen::MatrixXd added = Eigen::MatrixXd::Zero(study.mv_count(), study.simulation.samples);
   for (const Dither& signal : study.simulation.dither)

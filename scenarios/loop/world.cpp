@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-/// The errors of one channel. Each takes one value of the stream, whatever it is.
+/// Draws the errors of one channel. Each error takes one value of the stream, whatever its distribution.
 void draw_errors(const WorldRanges& ranges, const TransferFunction& model, Eigen::Index cv,
                  Eigen::Index input, RandomStream& stream, std::vector<Mismatch>& errors) {
   const double gain = ranges.gain_factor.sample(stream);
@@ -53,7 +53,7 @@ Eigen::MatrixXd values_of(const std::vector<BackgroundNoise>& noise, Eigen::Inde
   return x;
 }
 
-/// What the errors of channels cannot express, from streams of its own.
+/// Draws the properties that errors of channels cannot express, each from a stream of its own.
 void draw_structure(const Study& study, int number, World& world) {
   const auto stream_of = [&](StreamId id) {
     return RandomStream(study.seed, static_cast<std::uint64_t>(number), id);
@@ -71,7 +71,7 @@ void draw_structure(const Study& study, int number, World& world) {
   }
 }
 
-/// A size that comes and goes once a record.
+/// Scales the signals so that their size grows and shrinks once over the record.
 void swell(double by, double phase, Eigen::MatrixXd& signals) {
   const double step = 2.0 * std::numbers::pi / static_cast<double>(signals.cols());
   for (Eigen::Index k = 0; k < signals.cols(); ++k)

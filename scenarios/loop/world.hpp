@@ -21,13 +21,13 @@ struct BackgroundNoise {
 ///
 /// | member         | size   | meaning                                                       |
 /// |----------------|--------|---------------------------------------------------------------|
-/// | errors         |        | in what the channels of the plant differ from the model       |
+/// | errors         |        | how the channels of the plant differ from the model           |
 /// | parameters     |        | values of the parameters of a nonlinear plant                 |
-/// | noise_factor   | ny     | of the standard deviations of the measurement noise           |
+/// | noise_factor   | ny     | factors of the standard deviations of the measurement noise   |
 /// | cv_background  | ny     | added to each CV                                              |
 /// | mv_background  | nu     | added to each MV on its way to the plant                      |
 /// | background_swell |      | BackgroundRanges::swell                                       |
-/// | valve_curvature | nu    | of each valve; empty where all are straight                   |
+/// | valve_curvature | nu    | of each valve; empty if all are linear                        |
 struct World {
   std::vector<Mismatch> errors;
   std::vector<ParameterChange> parameters;
@@ -46,12 +46,12 @@ int world_of(const Study& study, std::int64_t index);
 /// The plant of a world: the model with its errors.
 TransferMatrix world_plant(const Study& study, const World& world);
 
-/// The plant with these mismatches on top of what the world has: factors multiply what is there, shifts of a
-/// dead time are confined to what leaves one of 0.
+/// The plant of a world with these mismatches on top of its errors: factors multiply the present values, and
+/// a shift never makes a dead time negative.
 TransferMatrix with_world_mismatches(TransferMatrix plant, std::vector<Mismatch> mismatches);
 
-/// The parameters of a nonlinear plant with these changes, drawn for the nominal plant, on top of those of
-/// the world: the ratio to the nominal value stays.
+/// These changes of parameters, drawn for the nominal plant, on top of the parameters of the world: each
+/// keeps its ratio to the value before the change.
 std::vector<ParameterChange> with_world_parameters(const Study& study, const World& world,
                                                    std::vector<ParameterChange> changes);
 
