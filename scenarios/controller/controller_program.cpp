@@ -29,7 +29,7 @@ std::string shown(const ProgramJson& json) {
   return json.dump(-1, ' ', true, ProgramJson::error_handler_t::replace).substr(0, kShownOfJson);
 }
 
-/// A number for each MV under `key`, all finite.
+/// The numbers under `key`, one for each MV, all finite.
 Eigen::VectorXd mvs_of(const ProgramJson& answer, const char* key, Eigen::Index count) {
   const auto list = answer.find(key);
   const bool fits =
@@ -53,7 +53,7 @@ void refuse_unknown_keys(const ProgramJson& answer, std::initializer_list<const 
 
 }  // namespace
 
-/// The programs of a study that run, and what they say about themselves.
+/// The running programs of a study, and what they say about themselves.
 class ControllerTalks {
  public:
   ControllerTalks(std::vector<std::string> command, double time_limit)
@@ -62,7 +62,7 @@ class ControllerTalks {
   const std::vector<std::string>& command() const { return programs_.command(); }
   double time_limit() const { return programs_.time_limit(); }
 
-  /// One that waits, or a new one. Throws ChildFailure and InputError.
+  /// Takes a program that waits, or starts a new one. Throws ChildFailure and InputError.
   std::unique_ptr<RunningProgram> take(const std::string& context) {
     std::unique_ptr<RunningProgram> running = programs_.take(context);
     if (std::exchange(running->is_new, false)) {
@@ -180,7 +180,8 @@ class ProgramController final : public Controller {
   std::string failure() const override { return failure_; }
 
  private:
-  /// What the program does wrong ends the loop, and whatever goes wrong the program: it may be out of step.
+  /// Does the work with the program. An error of the program ends the loop; any error ends the program, which
+  /// may be out of step.
   template <class Work>
   void guarded(Work work) {
     if (failure_.empty()) {
@@ -220,7 +221,7 @@ class ProgramController final : public Controller {
     off_.hold(move_.u_target);
   }
 
-  /// NaN, null in JSON, for a CV without one.
+  /// The setpoints; NaN, null in JSON, for a CV without one.
   Eigen::VectorXd setpoints() const { return (options_.setpoint_weight.array() > 0.0).select(y_set_, kNaN); }
 
   const std::shared_ptr<ControllerTalks> talks_;

@@ -19,24 +19,24 @@ class ControllerTalks;
 ///   {"call": "step", "y", "d", "u", "y_set", "cv_soft"}         ->  {"u": [...], "u_target": [...]}
 ///
 /// each with the number of the message (ProgramTalk). While variables are off, a step has "mv_off" and
-/// "cv_off" as well, and what it answers for an MV that is off is not used. Copies share their programs: one
-/// runs for each controller that is at work at the same time in one process, and idle ones wait for the next
-/// loop.
+/// "cv_off" as well, and the answer for an MV that is off is not used. Copies share their programs: in one
+/// process, each controller that is at work at the same time has a program of its own, and idle programs wait
+/// for the next loop.
 class ControllerProgram {
  public:
   ControllerProgram(std::vector<std::string> command, double time_limit);
 
   const std::vector<std::string>& command() const;
 
-  /// Does it run on the nominal model too, with the limits and setpoints from which S0 follows, or on the
-  /// plant of the study only? Starts the program when that is not known yet. Errors: InputError when it gives
-  /// no description.
+  /// Does the program run on the nominal model too, with the limits and setpoints from which S0 follows? If
+  /// not, it runs only on the plant of the study. Starts the program if this is not known yet. Errors:
+  /// InputError if it gives no description.
   bool runs_on_model() const;
 
   /// A controller of `plant` with this tuning, which receives unit step responses of `samples` samples. A
   /// failure of the program becomes ControlStatus::failed; a failure of its surroundings
-  /// (is_of_surroundings()) is thrown. `factory` makes the solver of nominal_target(), which is that of Mpc;
-  /// the answers of the program are limited to the hard limits of the MVs.
+  /// (is_of_surroundings()) is thrown. nominal_target() is that of Mpc, with a solver from `factory`; the
+  /// answers of the program are limited to the hard limits of the MVs.
   std::unique_ptr<Controller> controller(const PlantModel& plant, const MpcOptions& options,
                                          Eigen::Index samples, const QpSolverFactory& factory) const;
 

@@ -11,8 +11,8 @@
 
 #include "base/enum_words.hpp"
 
-// The open choices of the methods that assess a controller ([assessment] of a study file). Each method alone
-// knows its own: a study holds them as values whose types it does not know.
+// The open choices of the methods that assess a controller ([assessment] of a study file). Only the method
+// itself knows its options: a study holds them as values whose types it does not know.
 
 namespace mpm {
 
@@ -22,14 +22,14 @@ struct OptionKey;
 /// The options of the methods, one value a method, found by its type.
 class MethodOptions {
  public:
-  /// The defaults where nothing was read or set.
+  /// The options of this type; the defaults if nothing was read or set.
   template <class Options>
   const Options& of() const {
     static const Options defaults;
     const auto found = values_.find(typeid(Options));
     return found == values_.end() ? defaults : *std::any_cast<Options>(&found->second.value);
   }
-  /// To be read into, or set. The reference remains valid.
+  /// The same, to be read into or set. The reference remains valid.
   template <class Options>
   Options& of() {
     const auto [place, is_new] = values_.try_emplace(typeid(Options));
@@ -67,9 +67,9 @@ enum class AssessmentSetpoints : std::int8_t {
 
 /// What the methods assume of the plant without a fault.
 enum class AssessmentModel : std::int8_t {
-  automatic = 0,  ///< benchmark where the model is not exact, otherwise nominal (model_assumption())
-  nominal = 1,    ///< that of the controller, exactly
-  benchmark = 2,  ///< it may be off by some percent, of which the benchmark says how much
+  automatic = 0,  ///< benchmark if the model is not exact, otherwise nominal (model_assumption())
+  nominal = 1,    ///< the plant is exactly the model of the controller
+  benchmark = 2,  ///< the model may be off by some percent; the benchmark says by how much
 };
 
 template <>

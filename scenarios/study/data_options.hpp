@@ -20,16 +20,15 @@ enum class TableLayout {
   long_table,    ///< a row a value: time stamp, tag, value
 };
 
-/// What the value of a CV at a sample is when the file has more of them.
+/// Which value a CV has at a sample if the file has several values for it.
 enum class CvResampling { mean, nearest };
 
-/// Where the record begins: at rest at the operating point, or anywhere, in which case the model is taken to
-/// rest at the first values, and CVs are not judged before the slowest channel has settled.
+/// Where the record begins: at rest at the operating point, or anywhere. If it begins anywhere, the model is
+/// taken to be at rest at the first values, and CVs are not judged before the slowest channel has settled.
 enum class RecordStart { automatic, rest, anywhere };
 
-/// How the columns of a file of records map to the study: [data] of a study file. Groups of names by
-/// variable are empty where the study says nothing; a value of the study is scale (recorded -
-/// operating_point).
+/// How the columns of a file of records map to the study: [data] of a study file. Names and numbers by
+/// variable are empty if the study gives none. A value in the study is scale (recorded - operating_point).
 struct DataOptions {
   using Names = std::map<std::string, std::string>;
   using Numbers = std::map<std::string, double>;
@@ -46,7 +45,7 @@ struct DataOptions {
   std::string tag_column, value_column;  ///< of a long table; empty: those of usual names
   std::string separator;                 ///< one character; empty: found
   std::string decimal;                   ///< "." or ","; empty: found
-  Names tags;               ///< columns of CVs, MVs and MDs; without one: that of the variable's name
+  Names tags;               ///< columns of CVs, MVs and MDs; without one: the column with the variable's name
   Numbers operating_point;  ///< in the unit of the file; without one: 0
   Numbers scale;            ///< unit of the study over that of the file; without one: 1
   Names setpoint;           ///< of CVs with a setpoint, as the CV is recorded

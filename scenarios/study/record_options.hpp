@@ -21,22 +21,23 @@ enum class GapFill {
 /// What replaces a bad value.
 enum class BadValue : std::int8_t {
   stuck = 0,      ///< the last good one
-  off_scale = 1,  ///< one far off, the same throughout
+  off_scale = 1,  ///< one far off, always the same
 };
 
 template <>
 inline constexpr auto kWords<BadValue> = word_list("stuck", "off_scale");
 
-/// How the historian stores the measured CVs (historian.hpp). By default: every sample, as
-/// it was measured. The sizes are in standard deviations of the measurement noise of the CV
-/// (SimulationOptions::noise_standard_deviation), to which ranges and resolutions of transmitters are chosen.
+/// How the historian stores the measured CVs (historian.hpp). By default: every sample, as it was measured.
+/// The sizes are in standard deviations of the measurement noise of the CV
+/// (SimulationOptions::noise_standard_deviation), by which ranges and resolutions of transmitters are chosen.
 struct RecordOptions {
   static constexpr int kMostCandidates = 9;  ///< each has a stream of its own
-  /// Shifts of rows, samples: no loop goes on for more than a sample after its last row.
+  /// The largest shifts of rows, samples. kMostEarly is 1 because a loop goes on for one sample after its
+  /// last row.
   static constexpr int kMostLate = 10, kMostEarly = 1;
 
-  /// Of the CVs, and by how many samples the rows of each CV, MV and MD are later than their number says
-  /// (scenarios/loop/record_rows); empty: by none.
+  /// How the CVs are sampled, and by how many samples the rows of each CV, MV and MD are later than their
+  /// number says (scenarios/loop/record_rows); empty: by none.
   OutputSampling sampling = OutputSampling::snapshot;
   std::vector<double> cv_shift = {}, mv_shift = {}, md_shift = {};
   double outlier_share = 0.0;                              ///< of the samples of each CV, drawn one by one
@@ -48,11 +49,11 @@ struct RecordOptions {
   double bad_share = 0.0;   ///< of the samples of each CV that are bad, in the long run
   double bad_length = 1.0;  ///< mean length of a spell of bad values, samples
   BadValue bad_value = BadValue::stuck;
-  double bad_size = 20.0;    ///< of a value that is off scale, from the operating point
-  bool bad_quality = false;  ///< the record has their quality, so that its reader leaves them out, as gaps
-  double exception = 0.0;    ///< deviation from the last reported value that is not reported; 0: all are
-  double compression = 0.0;  ///< deviation that the historian allows itself; 0: it keeps every sample
-  int candidates = 0;        ///< further signals that it keeps (logged_candidates)
+  double bad_size = 20.0;        ///< of a value that is off scale, from the operating point
+  bool bad_quality = false;      ///< the record has their quality, so that its reader makes them gaps
+  double exception = 0.0;        ///< largest change since the last report that is not reported; 0: all are
+  double compression = 0.0;      ///< largest deviation that the historian allows; 0: it keeps every sample
+  int candidates = 0;            ///< further signals that the historian keeps (logged_candidates)
   double candidate_share = 0.5;  ///< of the disturbed loops in which one of them drives the disturbance
 
   const std::vector<double>& shifts_of(VariableSort sort) const {
@@ -63,7 +64,7 @@ struct RecordOptions {
     return sampling == OutputSampling::average ||
            std::any_of(cv_shift.begin(), cv_shift.end(), [](double shift) { return shift != 0.0; });
   }
-  /// The same of any variable.
+  /// The same for any variable.
   bool moves_rows() const { return resamples() || !mv_shift.empty() || !md_shift.empty(); }
   /// Do rows need the plant between the samples?
   bool looks_between_samples() const {

@@ -20,7 +20,7 @@ struct SignalStep {
   bool operator==(const SignalStep&) const = default;
 };
 
-/// From `sample` on the soft limits of a CV in a range are these.
+/// From `sample` on, a CV in a range has these soft limits.
 struct LimitStep {
   Eigen::Index cv;
   int sample;
@@ -44,9 +44,9 @@ struct OffSpell {
   VariableSort sort;
   Eigen::Index variable;
   int sample, samples;
-  std::optional<double> level = {};  ///< of an MV, where it is held; none: where it was when this began
+  std::optional<double> level = {};  ///< at which an MV is held; none: its value when the spell began
 
-  /// First sample at which the controller has it again, if no other spell begins there.
+  /// First sample at which the controller has the variable again, if no other spell begins there.
   int end() const { return sample + samples; }
   bool operator==(const OffSpell&) const = default;
 };
@@ -62,11 +62,11 @@ enum class NoiseDistribution {
 struct NoiseOptions {
   NoiseDistribution distribution = NoiseDistribution::normal;
   double autocorrelation = 0.0;  ///< phi of e(k) = phi e(k-1) + sqrt(1 - phi^2) w(k): the variance stays
-  /// Factor of the standard deviations of all CVs, drawn for each experiment. The basis case has 1: noise of
-  /// another size than in the benchmark.
+  /// Factor of the standard deviations of all CVs, drawn for each experiment. The basis case has 1: an
+  /// experiment may have noise of another size than the benchmark.
   Distribution factor = Distribution::constant(1);
-  /// Of the innovations. With a shared sequence the basis case has it as well, but not the basis case with
-  /// other noise (kRepeatIndex).
+  /// Whether experiments share the innovations. The basis case has the shared sequence, too, but the basis
+  /// case with other noise (kRepeatIndex) does not.
   SignalSequence sequence = SignalSequence::each;
 
   bool operator==(const NoiseOptions&) const = default;
@@ -85,14 +85,15 @@ struct SimulationOptions {
   bool random_steps = false;      ///< steps drawn once for the study, the same in every experiment
   Distribution step_interval = Distribution::uniform(60, 100);  ///< samples between random steps
   Distribution step_level = Distribution::uniform(-0.4, 0.4);   ///< level after a random step
-  /// Of a variation of each MD that is added to its steps, drawn once for the study; empty: none.
+  /// Standard deviation of a variation of each MD that is added to its steps, drawn once for the study;
+  /// empty: none.
   Eigen::VectorXd md_noise_standard_deviation = {};
   double md_noise_time_constant =
       0.0;                          ///< of its autocorrelation exp(-t/tau), time unit of the plant; 0: white
   std::vector<Dither> dither = {};  ///< of MVs; the same under every seed
   std::vector<OffSpell> off = {};   ///< in the order of their samples; the same in every experiment
-  /// Of the steps and variations above: in every loop the same ones, the benchmark among them, or in every
-  /// loop other ones (with_excitation()).
+  /// Whether all loops, including the benchmark, have the same steps and variations, or each loop has its own
+  /// (with_excitation()).
   SignalSequence excitation = SignalSequence::shared;
 
   /// Does anything but noise and faults move the loop?

@@ -59,17 +59,17 @@ struct ExperimentCounts {
 };
 
 /// Which way the active soft limit is stepped when T0 is determined. A range MPC answers the two differently:
-/// a limit that moves into the range pushes the CV through the soft constraint, one that moves out of it lets
-/// the CV follow its target only (docs/methods.md).
+/// a limit that moves into the range pushes the CV through the soft constraint, a limit that moves out of it
+/// only lets the CV follow its target (docs/methods.md).
 enum class StepDirection { into_range, out_of_range, mean };
 
 /// The constraint set from which S0 is taken (3.3.3).
 enum class SensitivityStructure {
-  operating_point,  ///< that of the basis case throughout
-  by_instant,       ///< the one that is active at each sample, from the data
+  operating_point,  ///< the set of the basis case throughout
+  by_instant,       ///< the set that is active at each sample, from the data
 };
 
-/// What changes when the constraint set does (analysis/sensitivity/nominal_estimator).
+/// What is switched when the constraint set changes (analysis/sensitivity/nominal_estimator).
 enum class SensitivitySwitching { output, input };
 
 /// What T0 is: the step responses of the controller on its own model, or Box-Jenkins models identified in a
@@ -94,11 +94,11 @@ struct SensitivityOptions {
 /// Deliberate errors in S0, to see their effect ("Sensitivity of S0" in section 6.5.2).
 struct S0PerturbationOptions {
   std::vector<double> multipliers;      ///< of time constant and damping in (6.24), ascending; empty: none
-  std::vector<Eigen::Index> cvs;        ///< whose experiments are looked at; empty: all at an active limit
-  double tolerance_lower = 0.75;        ///< multipliers within [tolerance_lower, tolerance_upper] are those
-  double tolerance_upper = 1.25;        ///< that the method should tolerate
+  std::vector<Eigen::Index> cvs;        ///< CVs whose experiments are used; empty: all at an active limit
+  double tolerance_lower = 0.75;        ///< the method should tolerate all multipliers
+  double tolerance_upper = 1.25;        ///< within [tolerance_lower, tolerance_upper]
   std::vector<Eigen::Index> fixed_mvs;  ///< MVs held in a second control structure; empty: there is none
-  std::vector<Eigen::Index> fixed_active_cvs;  ///< CVs at an active soft limit in it
+  std::vector<Eigen::Index> fixed_active_cvs;  ///< CVs at an active soft limit in that structure
 
   bool operator==(const S0PerturbationOptions&) const = default;
 };
@@ -113,7 +113,7 @@ enum class VarianceCentre { setpoint, mean };
 /// The experiments over which the rates of I_MPM are counted.
 enum class SourcePopulation { impactful, feasible };
 
-/// What becomes of loops that are not stable.
+/// What happens to loops that are not stable.
 enum class UnstableLoops : std::int8_t {
   keep,
   exclude,  ///< they are left out, as infeasible ones are
@@ -121,8 +121,8 @@ enum class UnstableLoops : std::int8_t {
 
 /// How a study checks its basis case.
 enum class SelfCheck {
-  ivar,    ///< Ivar of the chain lies in the band for every CV: what the verdicts of the thesis need
-  repeat,  ///< so does Ivar_basis (6.22) of the basis case with other noise: what the truth of impact needs
+  ivar,    ///< Ivar of the chain is in the band for every CV: what the verdicts of the thesis need
+  repeat,  ///< so is Ivar_basis (6.22) of the basis case with other noise: what the truth of impact needs
   none,
 };
 
@@ -170,7 +170,7 @@ struct CalibrationOptions {
   int healthy = 200;                       ///< loops without a fault
   int ud = 100;                            ///< loops with an unmeasured disturbance alone
   std::optional<std::uint64_t> seed = {};  ///< none: derived from that of the study
-  std::optional<int> worlds = {};          ///< in which they take place; none: as many as those of the study
+  std::optional<int> worlds = {};          ///< number of worlds; none: as many as in the study
 
   bool operator==(const CalibrationOptions&) const = default;
 };
@@ -180,7 +180,7 @@ struct MonitoringOptions {
   int window = 200;  ///< samples
   int stride = 50;   ///< samples from one window to the next
 
-  /// How many windows lie in a record.
+  /// Number of windows in a record.
   int count(int samples) const { return (samples - window) / stride + 1; }
   /// First sample of a window, and the one after its last.
   int begin(int number) const { return number * stride; }
@@ -189,20 +189,20 @@ struct MonitoringOptions {
   bool operator==(const MonitoringOptions&) const = default;
 };
 
-/// A published number for this study, by the name of the finding that it is shown beside.
+/// A published number for this study. `name` is the finding beside which it is shown.
 struct ReportedValue {
   std::string name;
   double value;
-  std::int64_t of = 0;     ///< experiments behind a share; 0: not told
-  std::string where = {};  ///< "FILE:LINE: KEY", for an error; no part of what is reported
+  std::int64_t of = 0;     ///< experiments behind a share; 0: not known
+  std::string where = {};  ///< "FILE:LINE: KEY", for an error message; not compared
 
   bool operator==(const ReportedValue& other) const {
     return name == other.name && value == other.value && of == other.of;
   }
 };
 
-/// The nonlinear plant that is simulated instead of the linear model; the controller and y_sim keep the
-/// model.
+/// The nonlinear plant that is simulated instead of the linear model; the controller and y_sim still use the
+/// linear model.
 struct NonlinearSimulation {
   NonlinearModel model;
   OdeOptions integration;
@@ -235,7 +235,7 @@ struct Study {
   std::vector<std::string> methods{"botelho"};    ///< of assessment, by name; "all" alone: every one
   AssessmentOptions assessment;                   ///< options of the methods
   std::optional<MonitoringOptions> monitoring;    ///< none: methods see whole records only
-  std::optional<CalibrationOptions> calibration;  ///< none: every method has its own threshold only
+  std::optional<CalibrationOptions> calibration;  ///< none: methods have only their own thresholds
   AggregateOptions aggregate;
   DataOptions data;                     ///< how a file of records of its loop is read
   std::vector<ReportedValue> reported;  ///< shown beside the results, never used to make them
@@ -251,10 +251,10 @@ struct Study {
   int experiment_count() const {
     return names_scenarios() ? static_cast<int>(scenarios.size()) : experiments.total();
   }
-  /// The model as methods of assessment see it: CVs that integrate behind a washout (assessed_model()).
+  /// A channel of the model as methods of assessment see it (assessed_model()).
   TransferFunction assessed_channel(Eigen::Index cv, Eigen::Index input) const;
-  /// G0, and of each CV that integrates every channel behind a washout, so that what drifts without end in an
-  /// open-loop simulation, y_sim and y - y_sim, stays in place.
+  /// G0, with every channel of an integrating CV behind a washout, so that y_sim and y - y_sim do not drift
+  /// without end, as they would in an open-loop simulation of G0.
   TransferMatrix assessed_model() const;
   /// Time constant of that washout.
   double washout() const;

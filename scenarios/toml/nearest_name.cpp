@@ -11,7 +11,7 @@ namespace {
 /// Longer names are no misspellings, and comparing them costs time in proportion to their length.
 constexpr std::size_t kLongestMisspelt = 64;
 
-/// Row by row of the table of distances between the beginnings of `a` and `b`.
+/// Computes the table of distances between the beginnings of `a` and `b`, row by row.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -28,8 +28,8 @@ struct NumberRule {
 
   /// False for NaN.
   bool contains(double value) const;
-  /// True when a distribution on [minimum, maximum] keeps to the rule. An infinite end does if the rule has
-  /// the same end.
+  /// True when a distribution on [minimum, maximum] keeps to the rule. An infinite end keeps to it if the
+  /// rule has the same end.
   bool contains_support(double minimum, double maximum) const;
   /// For messages: "a number > 0".
   std::string text() const;

@@ -13,7 +13,7 @@
 namespace mpm {
 namespace {
 
-/// Without backquotes, and with the text of a link in its place.
+/// The text without backquotes, and with the text of each link in place of the link.
 std::string plain(const std::string& markdown) {
   std::string text;
   for (std::size_t i = 0; i < markdown.size(); ++i) {

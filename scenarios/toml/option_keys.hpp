@@ -33,33 +33,33 @@ struct OptionKey {
   std::string fallback = {};  ///< the default
   std::string allowed = {};
   bool is_required = false;
-  /// Reads it from the table in which it stands; none: whoever reads the table does.
+  /// Reads the key from its table; none: the reader of the table does so.
   std::function<void(const TomlTable& table, const OptionKey& key)> reader = {};
   /// The keys of the table, or of each of the tables, under it; may be empty. They are asked for when the
   /// table is read, and may depend on what was read before.
   std::function<OptionKeys()> below = {};
-  std::string suffix = {};  ///< of the name of that table: "[]" for a list, ".NAME" for one a variable
+  std::string suffix = {};  ///< of the name of that table: "[]" for a list, ".NAME" for one table a variable
 
-  /// The key has no default.
+  /// Makes the key required: it has no default.
   OptionKey required() &&;
-  /// The default in words.
+  /// Gives the default in words.
   OptionKey otherwise(std::string words) &&;
-  /// What is allowed, in words.
+  /// Says in words what is allowed.
   OptionKey allow(std::string words) &&;
-  /// What is allowed in words, after what is known.
+  /// Adds words to what is allowed.
   OptionKey also(std::string words) &&;
-  /// The reader of a key of type option(), called when the key is there or required.
+  /// Sets the reader of a key of type option(), which is called if the key is there or required.
   OptionKey read(std::function<void(const TomlTable& table, const std::string& key)> how) &&;
-  /// Makes a check of the table in which the key stands before the key is read.
+  /// Adds a check of the table of the key, which is made before the key is read.
   OptionKey after(std::function<void(const TomlTable& table)> check) &&;
-  /// The keys of the tables under a key of type option().
+  /// Sets the keys of the tables under a key of type option().
   OptionKey with(std::string suffix_of_table, std::function<OptionKeys()> keys_below) &&;
 };
 
-/// The names, in their order.
+/// The names of the keys, in their order.
 std::vector<std::string> key_names(const OptionKeys& keys);
 
-/// The same keys without their readers: for tables whose reader calls others for some of its keys.
+/// The same keys without their readers: for tables whose reader leaves some keys to other readers.
 OptionKeys described(OptionKeys keys);
 
 /// Reads every key, in their order, into the options. Errors: InputError.
@@ -70,7 +70,7 @@ void read_keys(const TomlTable& table, const OptionKeys& keys);
 void read_list(const TomlTable& table, const OptionKey& key, std::size_t most,
                const std::function<void(const TomlTable& of_entry)>& take);
 
-/// The options in a table, as the overload `keys(Options&)` declares them.
+/// Reads options from a table, with the keys that the overload `keys(Options&)` declares.
 template <class Options>
 Options read_options(const TomlTable& table) {
   Options options;
@@ -93,7 +93,7 @@ std::string manual_table(const OptionKeys& keys);
 
 /// What the manual says about a key, as plain text on one line: meaning, unit, what is allowed.
 std::string plain_meaning(const OptionKey& key);
-/// The same of every key, by its name.
+/// The same for every key, by its name.
 std::map<std::string, std::string> plain_meanings(const OptionKeys& keys);
 
 }  // namespace mpm
@@ -106,11 +106,11 @@ OptionKey option(std::string name, std::string type, std::string meaning, std::s
 OptionKey number(std::string name, double& value, const NumberRule& rule, std::string meaning,
                  std::string unit = {});
 OptionKey flag(std::string name, bool& value, std::string meaning);
-/// A text that is not empty; the default is none.
+/// A text that is not empty; if the default is empty, it is none.
 OptionKey text(std::string name, std::string& value, std::string meaning);
 /// A text as read_name() takes it.
 OptionKey name(std::string name, std::string& value, std::string meaning);
-/// A whole number that is at least `least`, which is read before it; allow() says so in words.
+/// A whole number of at least `least`, which is read before it; say so in words with allow().
 OptionKey whole_from(std::string name, int& value, const int& least, std::int64_t high, std::string meaning);
 /// A list of whole numbers from `low` to `high`.
 OptionKey wholes(std::string name, std::vector<int>& value, int low, int high, std::string meaning);
@@ -125,10 +125,10 @@ OptionKey distribution(std::string name, Distribution& value, const NumberRule& 
 OptionKeys distribution_keys();
 /// A program and its arguments.
 OptionKey command(std::string name, std::vector<std::string>& value, std::string meaning);
-/// The names of some of the variables that `names` gives when it is read; their places come into `value`.
+/// The names of some variables, of all that `names` gives when the key is read; `value` gets their indices.
 OptionKey some_of(std::string name, std::vector<Eigen::Index>& value,
                   std::function<std::vector<std::string>()> names, std::string meaning);
-/// The name of one of the variables.
+/// The name of one of the variables; `value` gets its index.
 OptionKey one_of(std::string name, Eigen::Index& value, std::function<std::vector<std::string>()> names,
                  std::string meaning);
 
@@ -141,8 +141,8 @@ OptionKey time_limit(double& value, std::string meaning);
 OptionKey table(std::string name, std::function<OptionKeys()> below, std::string meaning);
 /// A table that is read only when it is there.
 OptionKey optional_table(std::string name, std::function<OptionKeys()> below, std::string meaning);
-/// A table of relative frequencies in the order of `weights`, all of the first `required` names or none;
-/// names that are left out beside others have 0. `keys` have the names and meanings.
+/// A table of relative frequencies in the order of `weights`. The table must have the first `required` names,
+/// if it is there; other names that it leaves out have 0. `keys` have the names and meanings.
 OptionKey weights(std::string name, OptionKeys keys, std::size_t required, double* weights,
                   std::string meaning);
 /// Makes a check of what was read before it.
@@ -176,14 +176,14 @@ OptionKey choice(std::string name, Value& value, std::vector<std::string> words,
   return made;
 }
 
-/// The same of an enumeration that has its words.
+/// The same for an enumeration that has kWords.
 template <WordedEnum Value>
 OptionKey choice(std::string name, Value& value, std::string meaning) {
   return choice(std::move(name), value, {kWords<Value>.begin(), kWords<Value>.end()}, std::move(meaning));
 }
 
-/// A list of tables, whose keys `below` ties to one Entry; `take` gets each that was read, in their order.
-/// More than `most` are refused.
+/// A list of tables, at most `most`. `below` ties the keys of a table to an Entry; `take` gets each Entry
+/// that was read, in their order.
 template <class Entry>
 OptionKey list(std::string name, std::size_t most, std::function<OptionKeys(Entry&)> below,
                std::function<void(const TomlTable& table, Entry& entry)> take, std::string meaning) {

@@ -55,7 +55,7 @@ TomlDraft& TomlDraft::explain(std::string_view kind, std::map<std::string, std::
   return *this;
 }
 
-/// The comment above a key; empty for one that has its comment, or has none.
+/// The comment above a key; empty if the key already has its comment, or has no meaning.
 std::string TomlDraft::explanation(const std::string& key, Explained& explained) const {
   constexpr std::size_t kWidth = 100;
   const auto found = meanings_.find(key);

@@ -19,7 +19,7 @@ class TomlDraft {
  public:
   explicit TomlDraft(std::vector<std::string> key_order) : key_order_(std::move(key_order)) {}
 
-  /// Writes the value under a key of the order; the last one counts, also instead of tables under this key.
+  /// Sets the value of a key of the order. The last value counts; it also replaces tables under this key.
   template <class Value>
   void set(std::string_view key, const Value& value) {
     entry(key).value = toml_literal(value);
@@ -29,18 +29,18 @@ class TomlDraft {
   void set_default(std::string_view key, const Value& value) {
     entry(key).fallback = toml_literal(value);
   }
-  /// A value with its path, "table.list[0].key"; of a key without a default the default is empty.
+  /// A value with its path, "table.list[0].key"; `fallback` is empty for a key without a default.
   struct Line {
     std::string path, value, fallback;
   };
-  /// All values, with those that comment() has put in their place, in the order of text().
+  /// All values, including the texts of comment(), in the order of text().
   std::vector<Line> lines() const;
-  /// Writes the meaning of each key above it, on lines of its own; of several tables of one kind above the
-  /// first. Returns this table.
+  /// Has the meaning of each key written above it, on lines of its own; for several tables of one kind, above
+  /// the first only. Returns this table.
   TomlDraft& explain(std::string_view kind, std::map<std::string, std::string> meanings);
-  /// "# KEY: TEXT" instead of a value that TOML cannot have. The text has no line break.
+  /// Writes "# KEY: TEXT" instead of a value that TOML cannot have. The text has no line break.
   void comment(std::string_view key, std::string_view text);
-  /// The table under `key`, made when it is not there.
+  /// The table under `key`, which is made if it is not there.
   TomlDraft& table(std::string_view key, const std::vector<std::string>& key_order);
   /// Entry `place` of the list of tables under `key`; entries are made one after the other.
   TomlDraft& table_in_list(std::string_view key, std::size_t place,

@@ -11,14 +11,14 @@
 
 #include "scenarios/random/distribution.hpp"
 
-// Values as they stand in a TOML text. Each one comes back as it was, a number to the last bit.
+// Values as they are written in a TOML text. Each one is read back unchanged, a number to the last bit.
 
 namespace mpm {
 
-/// Most dots that one key of a TOML text may have. The parser builds, and destroys by recursion, one table a
-/// part of a dotted key, without a limit of its own up to version 3.3: some 50 000 dots overflow the stack.
-/// The limit here, together with the parser's own one on nested values (256), keeps a factor of several away
-/// from that.
+/// Most dots that one key of a TOML text may have. For each part of a dotted key the parser builds one table,
+/// which it destroys by recursion. Up to version 3.3 it has no limit of its own: some 50 000 dots overflow
+/// the stack. The limit here, together with the parser's limit on nested values (256), stays below that by a
+/// factor of several.
 inline constexpr std::ptrdiff_t kMaxDotsInKey = 64;
 
 /// "0.1", "2.0", "1e-09", "-inf": never a whole number.
@@ -30,7 +30,7 @@ std::string toml_literal(bool value);
 std::string toml_literal(std::string_view text);
 std::string toml_literal(const std::string& text);
 std::string toml_literal(const char* text);
-/// A list; of many numbers on several lines.
+/// A list; many numbers take several lines.
 std::string toml_literal(const Eigen::VectorXd& numbers);
 std::string toml_literal(const std::vector<int>& numbers);
 std::string toml_literal(const std::vector<std::string>& texts);

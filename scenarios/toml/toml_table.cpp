@@ -15,7 +15,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kReadAtOnce = 40;  // of more names a reader does not find the right one in the list
+constexpr std::size_t kReadAtOnce = 40;  // in a longer list a reader does not find the right name
 
 std::uint32_t line_of(const toml::node* node, std::uint32_t fallback) {
   return node != nullptr && node->source().begin.line > 0 ? node->source().begin.line : fallback;
@@ -44,7 +44,7 @@ TomlTable::TomlTable(const TomlTable& parent, const toml::table* table, std::str
   refuse_unknown_keys();
 }
 
-/// The first one in the file.
+/// Refuses the first unknown key in the file.
 void TomlTable::refuse_unknown_keys() const {
   if (table_ == nullptr) {
     return;

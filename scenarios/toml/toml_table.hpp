@@ -14,13 +14,14 @@ namespace mpm {
 
 /// A view of one table of a TOML document that knows where it stands and which keys it may have.
 ///
-/// It refuses what it cannot take by InputError "FILE:LINE: KEY: found ...; allowed: ...", where KEY is the
+/// It refuses what it cannot take with InputError "FILE:LINE: KEY: found ...; allowed: ...", where KEY is the
 /// whole path ("controller.mv.u1.cost", places in lists counted from 0) and LINE the line of the value or,
 /// for a missing key, of its table. A key that is looked up must be among the allowed ones. The document and
 /// the file name must outlive the view.
 ///
 /// What is read can be recorded: with a draft, the readers of values (toml_values.hpp) write every value that
-/// they return into it, the defaults too. It becomes the same document with its defaults written out.
+/// they return into it, including defaults. The draft becomes the same document with its defaults written
+/// out.
 class TomlTable {
  public:
   /// The whole document. Errors: InputError for a key that is not in `allowed_keys`. `draft`, whose keys must
@@ -46,8 +47,8 @@ class TomlTable {
   /// The tables in the list under `key`, one or more. Errors: as table().
   std::vector<TomlTable> tables(std::string_view key, const std::vector<std::string>& allowed_keys) const;
 
-  /// Records the value in force of a key, when there is a draft; the last one counts. For readers of values,
-  /// and for those who look at a node themselves.
+  /// Records the value of a key that is in force, if there is a draft; the last one counts. For the readers
+  /// of values, and for code that looks at a node itself.
   template <class Value>
   void record(std::string_view key, const Value& value) const {
     if (draft_ != nullptr)
@@ -90,10 +91,10 @@ class TomlTable {
   TomlDraft* draft_;  // null: nothing is recorded
 };
 
-/// "'abc'", followed by the nearest of `names` if there is one: " (nearest: 'abd')". Of a list of more than
-/// 40 names, such as those of findings, the nearest three.
+/// "'abc'", followed by the nearest of `names` if there is one: " (nearest: 'abd')". If there are more than
+/// 40 names, such as those of findings, the nearest three follow.
 std::string with_nearest(std::string_view name, const std::vector<std::string>& names);
-/// All of `names`, or of more than 40 how many there are.
+/// All of `names`, or their number if there are more than 40.
 std::string allowed_names(const std::vector<std::string>& names);
 
 }  // namespace mpm

@@ -19,8 +19,9 @@ constexpr std::size_t kQuotedLength = 40;
   throw InputError(fmt::format("{}:{}: TOML", file_name, line), found, allowed);
 }
 
-/// Most dots between two commas, equals signs or braces of a line, as in a list of numbers. A quoted part of
-/// a key may have commas of its own: a line with quotes counts as one piece.
+/// The most dots in one piece of a line. Commas, equals signs and opening braces or brackets separate pieces,
+/// so that a list of numbers has few dots in each. A quoted part of a key may have commas of its own: a line
+/// with quotes counts as one piece.
 std::ptrdiff_t most_dots(std::string_view line) {
   const bool quoted = line.find_first_of("\"'") != std::string_view::npos;
   std::ptrdiff_t most = 0, dots = 0;

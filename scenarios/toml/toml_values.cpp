@@ -21,14 +21,14 @@ Value recorded(const TomlTable& table, std::string_view key, Value value) {
   return value;
 }
 
-/// What stands under a key that may be missing: what `read` reads, or its default.
+/// The value of a key that may be missing: what `read` reads, or the default.
 template <class Value, class Read>
 Value read_or(const TomlTable& table, std::string_view key, const Value& fallback, Read read) {
   table.record_default(key, fallback);
   return table.has(key) ? read() : recorded(table, key, fallback);
 }
 
-/// NaN, which no rule takes, for what is no number.
+/// The number in a node; NaN, which no rule allows, if it has none.
 double number_in(const toml::node& node) {
   return node.value<double>().value_or(kNaN);
 }
@@ -37,7 +37,7 @@ std::string describe_pair(double low, double high) {
   return fmt::format("[{}, {}]", low, high);
 }
 
-/// The two elements under `key`, NaN for what is no number.
+/// The two numbers of the list under `key`; refuses anything else.
 NumberPair raw_pair(const TomlTable& table, std::string_view key, const std::string& allowed) {
   const toml::node& node = table.require(key, allowed);
   const toml::array* list = node.as_array();

@@ -60,14 +60,14 @@ std::vector<std::size_t> read_some_of(const TomlTable& table, std::string_view k
 std::vector<std::string> read_texts_or(const TomlTable& table, std::string_view key,
                                        const std::string& allowed, const std::vector<std::string>& fallback);
 
-/// A program and its arguments: a list of one or more texts, of which two may be alike and all but the first
+/// A program and its arguments: a list of one or more texts, which may repeat, and of which all but the first
 /// may be empty.
 std::vector<std::string> read_command(const TomlTable& table, std::string_view key);
 
 /// Seconds that a program may take for an answer: above 0, and a day at most.
 double read_time_limit_or(const TomlTable& table, std::string_view key, double fallback);
 
-/// A list of `rule.text()`, from one to `longest` of them.
+/// A list of 1 to `longest` numbers, each within `rule`.
 Eigen::VectorXd read_numbers(const TomlTable& table, std::string_view key, const NumberRule& rule,
                              std::size_t longest);
 
