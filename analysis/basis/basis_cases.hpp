@@ -8,7 +8,7 @@
 
 namespace mpm {
 
-/// The basis cases of several studies, each made once however many ask for it, from any thread.
+/// The basis cases of several studies, each made only once, however many callers ask for it from any thread.
 class BasisCases {
  public:
   explicit BasisCases(QpSolverFactory factory);
@@ -23,7 +23,7 @@ class BasisCases {
  private:
   struct Entry;
 
-  /// The entry of an equal study, made unless it is there.
+  /// The entry of this study, which is made if no equal study has one.
   Entry& entry_of(const Study& study);
 
   QpSolverFactory factory_;

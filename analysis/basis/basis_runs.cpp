@@ -27,14 +27,14 @@ void require_active(const Study& study, const NominalSensitivity& sensitivity) {
                        "CVs at a setpoint or an active soft limit");
 }
 
-/// Without a fault, a plant that cannot rest where the loops begin is the study's.
+/// If a plant without a fault cannot rest where the loops begin, the study is wrong.
 void require_start(const Trajectory& loop) {
   if (loop.failure == LoopFailure::no_steady_state)
     throw InputError("the study's loop without a fault", loop.message,
                      "a plant with a steady state at the first setpoints and limits");
 }
 
-/// Of a controller that runs on the plant only there is no S0, and nothing that is made of it.
+/// A controller that runs on the plant only has no S0: the study must not ask for what needs one.
 void refuse_without_sensitivity(const Study& study) {
   const std::string found = "a program that cannot run on its model (on_model is false)";
   if (study.diagnosis.self_check == SelfCheck::ivar)
@@ -44,7 +44,7 @@ void refuse_without_sensitivity(const Study& study) {
     throw InputError("controller.program", found, "without s0_perturbation: there is no S0 to be modified");
 }
 
-/// The loop without a fault, and what is said about it.
+/// Runs the loop without a fault, and diagnoses and checks it.
 void run_loop(const Study& study, const QpSolverFactory& factory, const StepObserver& observer,
               BasisCase& basis) {
   basis.trajectory = simulate_experiment(study, basis_draw(), factory, observer);

@@ -14,12 +14,12 @@ struct StructureFit {
   SecondOrderFit available;         ///< (6.24) with the MVs available
   SecondOrderFit fixed;             ///< (6.24) with them held
   double time_constant_multiplier;  ///< tau of `fixed` over that of `available`; NaN without both fits
-  double damping_multiplier;        ///< the same of xi
+  double damping_multiplier;        ///< the same for xi
 };
 
-/// The CVs at an active limit in both structures, in the order of the second; none if the study has no second
-/// structure. The multipliers replace those of S0Perturbation: Ivar_diag tolerates a change of structure if
-/// it tolerates these.
+/// The fits of all CVs at an active limit in both structures, in the order of the second; none if the study
+/// has no second structure. The multipliers replace those of S0Perturbation: Ivar_diag tolerates a change of
+/// structure if it tolerates these.
 std::vector<StructureFit> structure_fits(const Study& study, const BasisCase& basis);
 
 }  // namespace mpm

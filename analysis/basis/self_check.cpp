@@ -14,13 +14,13 @@
 namespace mpm {
 namespace {
 
-// Shares of a step of the reference. The shipped studies keep all three with a factor of 50 and more;
+// Shares of a step of the reference. The shipped studies keep to all three by a factor of 50 or more;
 // rounding of the solver is far below the last one.
-constexpr double kSettled = 0.02;      // most that T0 changes in the last tenth of its step response
-constexpr double kGainError = 0.05;    // most that it ends away from 1
+constexpr double kSettled = 0.02;      // largest change of T0 in the last tenth of its step response
+constexpr double kGainError = 0.05;    // largest distance of its end from 1
 constexpr double kStandsStill = 1e-6;  // root mean square of a CV that does not move
 
-/// What speaks against the step response of a CV to its own reference; empty: nothing.
+/// What is wrong with the step response of a CV to its own reference; empty: nothing.
 std::string trouble_of_response(const Eigen::Ref<const Eigen::RowVectorXd>& own, bool reaches_reference) {
   const Eigen::Index samples = own.size();
   const Eigen::Index tail = std::min(samples, 1 + std::max<Eigen::Index>(1, samples / 10));
@@ -63,8 +63,8 @@ bool is_at_rest(const Study& study, const Trajectory& loop) {
   return rms.maxCoeff() <= kStandsStill * study.sensitivity.step_size;
 }
 
-/// Ivar_basis (6.22) of the basis case with noise that no experiment has. A loop that does not run to its end
-/// has none: NaN, outside of every band.
+/// Ivar_basis (6.22) of the basis case with noise that no experiment has. If its loop does not run to its
+/// end, they are NaN, which is outside of every band.
 Eigen::VectorXd repeated_indices(const Study& study, const BasisCase& basis, const QpSolverFactory& factory) {
   ExperimentDraw again = basis_draw();
   again.index = kRepeatIndex;

@@ -23,7 +23,8 @@ class StepCounter {
     if (last_ == QpStatus::solved && moves)  // otherwise there were no moves to be found
       add(moves->result);
   }
-  /// What ended the loops, when something did: without an answer to its problem a controller is infeasible.
+  /// What ended the loops, if something did: `failed` if the solver gave up on the last problem, otherwise
+  /// `infeasible`.
   ControlStatus reason() const {
     const bool gave_up = last_ != QpStatus::solved && last_ != QpStatus::infeasible;
     return gave_up ? ControlStatus::failed : ControlStatus::infeasible;
@@ -60,7 +61,7 @@ std::optional<TunedBasis> tuned_basis(const Study& study, const ExperimentDraw& 
     own.basis = run_basis_case(own.study, factory,
                                [&](const Controller& controller) { counter.observe(controller); });
   } catch (const InputError& error) {
-    // The study itself has an S0, so that it is the changed weight that leaves none.
+    // The study itself has an S0, so the changed weight is the reason that there is none.
     own.basis.trajectory.status = counter.reason();
     own.basis.explanation = error.what();
   }

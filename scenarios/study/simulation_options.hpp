@@ -81,8 +81,8 @@ struct SimulationOptions {
   std::vector<SignalStep> setpoint_steps;  ///< of CVs; the same in every experiment
   std::vector<LimitStep> limit_steps =
       {};                         ///< of soft limits, in the order of their samples; in every experiment
-  std::vector<SignalStep> steps;  ///< of MDs, in the order of their samples; or
-  bool random_steps = false;      ///< steps drawn once for the study, the same in every experiment
+  std::vector<SignalStep> steps;  ///< of MDs, in the order of their samples; none with random_steps
+  bool random_steps = false;      ///< steps of MDs drawn once for the study, the same in every experiment
   Distribution step_interval = Distribution::uniform(60, 100);  ///< samples between random steps
   Distribution step_level = Distribution::uniform(-0.4, 0.4);   ///< level after a random step
   /// Standard deviation of a variation of each MD that is added to its steps, drawn once for the study;
