@@ -28,7 +28,7 @@ ExperimentStatus experiment_status(ControlStatus status) {
                                                : ExperimentStatus::failed;
 }
 
-/// Is the experiment complete only with the loops that have one of its two faults alone?
+/// Does the experiment need the loops with each of its two faults alone?
 bool has_loops_alone(const ExperimentDraw& draw) {
   return draw.kind == ExperimentKind::mpm_ud && draw.true_cv() >= 0;
 }
@@ -39,7 +39,7 @@ bool has_dominance(const AssessmentForm& form) {
          form.find("dominance_mpm") != nullptr;
 }
 
-/// The answer of the method that has dominance; null when it was not asked or gave no verdict.
+/// The answer of the method that has dominance; null if it was not asked or gave no verdict.
 AssessmentRecord* chain_verdict(std::vector<AssessmentRecord>& assessments) {
   const auto chain = std::find_if(assessments.begin(), assessments.end(), [](const auto& said) {
     return has_dominance(*said.form) && said.answered();
@@ -91,8 +91,8 @@ const BasisCase& ExperimentRunner::basis_of(const ExperimentDraw& draw) {
 
 template <class Call>
 auto ExperimentRunner::with_panel(const ExperimentDraw& draw, const FinishedLoop& loop, Call with) {
-  // Made when the first loop of a world is to be assessed: loops like a record of a plant are assessed
-  // elsewhere.
+  // The panel of a world is made when its first loop is to be assessed: loops like a record of a plant are
+  // assessed elsewhere.
   std::unique_ptr<MethodPanel>* const of_world =
       draw.world == kExactWorld ? nullptr : &worlds_[draw.world].panel;
   if (of_world && !*of_world)
@@ -166,7 +166,7 @@ void ExperimentRunner::exclude_unstable(ExperimentRecord& record) {
                                record.draw.world, case_of(record.draw).spectral_radius);
 }
 
-/// Runs the loops with one of two faults alone, without which the experiment is not complete.
+/// Runs the loops with each of the two faults alone, without which the experiment is not complete.
 void ExperimentRunner::assess_alone(ExperimentRecord& record, const StepObserver& observer) {
   const FinishedLoop mpm_alone = simulate(record.draw.mismatch_alone(), observer);
   const FinishedLoop ud_alone = simulate(record.draw.disturbance_alone(), observer);
@@ -249,7 +249,7 @@ ExperimentRecord ExperimentRunner::run(std::int64_t index, StorePolicy store, co
     assess_alone(record, observer);
   if (record.status == ExperimentStatus::ok) {
     add_truth(record, main.trajectory);
-    if (true_cv >= 0 && !main.assessed.y.row(true_cv).hasNaN())  // S0 acts on every sample
+    if (true_cv >= 0 && !main.assessed.y.row(true_cv).hasNaN())  // S0 needs every sample
       record.perturbed = perturbation_.ivar_diag(true_cv, Eigen::RowVectorXd(main.assessed.y.row(true_cv)),
                                                  Eigen::RowVectorXd(main.assessed.y_sim.row(true_cv)));
   } else {

@@ -24,16 +24,15 @@ enum class ExperimentStatus : std::int8_t {
   infeasible = 1,  ///< some MPC problem had no solution; the experiment is left out, as in the thesis
   failed = 2,      ///< the solver gave no answer, the plant could not be integrated or had no steady state to
                    ///< begin at, or the process that ran the experiment died
-  unstable = 3,    ///< the loop is not stable, with its fault or as its world is without it, and the study
-                   ///< leaves such loops out (UnstableLoops)
+  unstable = 3,  ///< the loop is not stable, with its fault or in its world without it, and the study leaves
+                 ///< such loops out (UnstableLoops)
 };
 
 template <>
 inline constexpr auto kWords<ExperimentStatus> = word_list("ok", "infeasible", "failed", "unstable");
 
-/// Whose closed-loop data an archive keeps.
-/// Which loops are kept: none, those with a wrong verdict of the first method, all, or all with their
-/// LoopTruth.
+/// The loops whose data an archive keeps: none, those with a wrong verdict of the first method, all, or all
+/// with their LoopTruth.
 enum class StorePolicy { none, flagged, all, truth };
 
 /// The data of one closed loop as they are kept in an archive.
@@ -55,10 +54,11 @@ struct LoopTruth {
   Alone mpm_alone = {}, ud_alone = {};
 };
 
-/// Everything about one experiment: the draw, the end, the truth, and the answer of each method of the study.
+/// Everything about one experiment: the draw, how it ended, the truth, and the answer of each method of the
+/// study.
 ///
 /// In an experiment with mismatch and disturbance on one CV the loop is run three times: with both, with the
-/// mismatch alone and with the disturbance alone. The methods see the loop with both; of the other two the
+/// mismatch alone and with the disturbance alone. The methods see the loop with both; from the other two the
 /// chain of the thesis says how much the mismatch dominates (FaultsAlone).
 ///
 /// In an experiment with a changed tuning the methods know the S0 of tuned_basis(), and an experiment whose
@@ -68,24 +68,24 @@ struct ExperimentRecord {
   ExperimentStatus status = ExperimentStatus::failed;
   std::string message;        ///< why it failed, or that its world is not stable; empty otherwise
   LoopConditions conditions;  ///< of the loop that was assessed
-  /// ny, basis_variance_indices(), in a world FaultCost::variance_ratio; empty unless the status is ok.
+  /// basis_variance_indices() or, in a world, FaultCost::variance_ratio, ny; empty unless the status is ok.
   Eigen::VectorXd ivar_basis;
-  std::optional<FaultCost> cost = {};         ///< of the faults, of an experiment in a world with status ok
+  std::optional<FaultCost> cost = {};         ///< of the faults; only in a world, with status ok
   RepairGains repair = {};                    ///< of the channels, in a world; empty: not computed
   std::vector<AssessmentRecord> assessments;  ///< by each method of the study, in their order
-  PerturbedIvar perturbed;  ///< of the affected CV when S0 is modified; empty when that is not asked for, or
+  PerturbedIvar perturbed;  ///< of the affected CV under a modified S0; empty if this is not asked for, or if
                             ///< its record has gaps
   SolverStatistics solver;  ///< of all loops of the experiment
   /// The assessed loop as it was measured, if it was requested. recorded() gives the loop that the methods
   /// saw.
   std::optional<LoopRecord> loop;
-  std::optional<LoopTruth> truth = {};  ///< of that loop, when it was asked for
+  std::optional<LoopTruth> truth = {};  ///< of that loop, if it was requested
 
-  /// What the method of this name says; null when it is not one of the study.
+  /// The answer of the method of this name; null if it is not one of the study.
   const AssessmentRecord* by(std::string_view method) const;
-  /// What the method that diagnoses says (diagnoses()); null when the study has none.
+  /// The answer of the method that diagnoses (diagnoses()); null if the study has none.
   const AssessmentRecord* diagnosed() const;
-  /// The same; an answer without a form when the study has none.
+  /// The same; an answer without a form if the study has none.
   const AssessmentRecord& chain() const;
 };
 

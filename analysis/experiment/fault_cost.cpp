@@ -16,7 +16,7 @@
 namespace mpm {
 namespace {
 
-/// Sums over the pairs of one side of them.
+/// Sums over one loop of each pair: the loops with the fault, or those without it.
 struct Side {
   Eigen::VectorXd variance, loss, violation;
   std::vector<double> total;
@@ -52,7 +52,7 @@ bool FaultCost::has_impact(double upper, ImpactMeasure measure) const {
 }
 
 std::int64_t pilot_noise(const Study& study, const ExperimentDraw& draw, int loops, int loop) {
-  // Below those of the benchmarks.
+  // Below the indices of the benchmarks of worlds.
   constexpr std::int64_t kFirst = -(std::int64_t{1} << 32);
   const int stride = study.world ? std::max(study.world->cost_loops, study.world->repair_loops) : loops;
   return kFirst - draw.index * std::max(stride, loops) - loop;

@@ -15,11 +15,11 @@ namespace mpm {
 namespace {
 
 constexpr double kLargestScale = 1024.0, kSmallestScale = 1.0 / 1024.0;
-constexpr double kLargestSizedFactor = 10.0;  // of a gain or a time constant, and its inverse the smallest
+constexpr double kLargestSizedFactor = 10.0;  // of a gain or a time constant; its inverse is the smallest
 constexpr double kTolerance = 0.03;           // of the effect, relative
 constexpr int kMostPilots = 16;
 
-/// The scale at which `factor`^scale reaches the end of [low, high] that it goes to.
+/// The scale at which `factor`^scale reaches the end of [low, high] that it moves towards.
 double scale_to_end(double factor, double low, double high) {
   const double end = factor > 1.0 ? high : low;
   return factor == 1.0 ? kLargestScale : std::log(end) / std::log(factor);
@@ -58,8 +58,9 @@ double largest_scale(const Study& study, const ExperimentDraw& draw) {
   return largest;
 }
 
-/// The argument in [kSmallestScale, largest] at which `effect` is nearest to `target`: brackets it from 1 by
-/// factors of 4, then goes by the line between the ends of the bracket, both axes logarithmic, kept off them.
+/// The argument in [kSmallestScale, largest] at which `effect` is nearest to `target`. Brackets it from 1 by
+/// factors of 4, then interpolates linearly between the ends of the bracket, both axes logarithmic, at a
+/// distance from the ends.
 double scale_with_effect(const std::function<double(double)>& effect, double target, double largest) {
   int pilots = 0;
   double best = 1.0, best_error = kInfinity;

@@ -41,14 +41,14 @@ CvJudgement judge_cvs(const ExperimentRecord& record, const AssessmentRecord& as
   return judgement;
 }
 
-/// The channel of the only mismatch, when it is one of an MV; none otherwise.
+/// The channel of the only mismatch, if it is a channel of an MV; none otherwise.
 std::optional<Channel> mismatched_channel(const Study& study, const ExperimentDraw& draw) {
   if (draw.mismatches.size() != 1 || draw.mismatches[0].input >= study.mv_count())
     return std::nullopt;
   return Channel{draw.mismatches[0].cv, draw.mismatches[0].input};
 }
 
-/// What a parameter is where there is no mismatch.
+/// The value of a parameter without a mismatch.
 double without_mismatch(MismatchParameter parameter) {
   return parameter == MismatchParameter::gain || parameter == MismatchParameter::time_constant ||
                  parameter == MismatchParameter::sign

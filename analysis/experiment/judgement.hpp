@@ -21,15 +21,15 @@ enum class Correctness : std::int8_t {
 template <>
 inline constexpr auto kWords<Correctness> = word_list("not judged", "wrong", "right");
 
-/// The answer of a method on a named scenario, CV by CV, compared with the study.
+/// The answer of a method on a named scenario, compared with the truth CV by CV.
 struct CvJudgement {
   std::vector<Eigen::Index> found;         ///< affected CVs that are flagged
-  std::vector<Eigen::Index> missed;        ///< affected CVs that are not
-  std::vector<Eigen::Index> false_alarms;  ///< other CVs that are
-  /// Found CVs with one sort of fault that the method takes for the other. With both sorts on a CV, either is
-  /// right.
+  std::vector<Eigen::Index> missed;        ///< affected CVs that are not flagged
+  std::vector<Eigen::Index> false_alarms;  ///< other CVs that are flagged
+  /// Found CVs with one sort of fault for which the method names another source. With both sorts on a CV,
+  /// either is right.
   std::vector<Eigen::Index> wrong_source;
-  bool judged_source = false;  ///< some found CV has one sort of fault
+  bool judged_source = false;  ///< some found CV has exactly one sort of fault
 
   bool located() const { return missed.empty() && false_alarms.empty(); }
   bool right() const { return located() && wrong_source.empty(); }
@@ -44,8 +44,9 @@ struct CvJudgement {
 /// | channel          | is the mismatched channel among the named | with one mismatch, of an MV      |
 /// | parameter        | are channel and parameter the named ones  | as channel                       |
 /// | size             | is the true size in its interval          | parameter is right               |
-/// | candidate        | is the named signal the cause             | flagged, a logged signal drives the
-/// disturbance | | cvs              | is every CV judged rightly                | named scenarios |
+/// | candidate        | is the named signal the cause             | flagged, a logged signal drives  |
+/// |                  |                                           | the disturbance                  |
+/// | cvs              | is every CV judged rightly                | named scenarios                  |
 ///
 /// In a loop that is not flagged, no channel and no mismatch is named.
 struct Judgement {
@@ -55,23 +56,23 @@ struct Judgement {
   Correctness parameter = Correctness::not_judged;
   Correctness size = Correctness::not_judged;
   Correctness candidate = Correctness::not_judged;
-  /// |size - true size| over the true deviation from the model (from 1 for a factor, from 0 for a shift), of
-  /// those whose parameter is right: 1 is no better than the model. NaN otherwise.
+  /// The distance |size - true size| relative to the true deviation from the model (from 1 for a factor, from
+  /// 0 for a shift), if the parameter is right: 1 is no better than the model. NaN otherwise.
   double size_error = kNaN;
   std::optional<CvJudgement> cvs;
-  bool flagged = false;                ///< the loop is
-  bool flagged_without_fault = false;  ///< it is, and model and plant agree
+  bool flagged = false;                ///< the loop is flagged
+  bool flagged_without_fault = false;  ///< the loop is flagged and has no fault
 
-  /// Where the fault is: by every CV of a named scenario, by the worst CV otherwise.
+  /// Is the place of the fault right? Judged by every CV of a named scenario, by the worst CV otherwise.
   Correctness location() const;
-  /// What it is, in the same way.
+  /// Is the source of the fault right? Judged in the same way.
   Correctness source() const;
-  /// Something that was asked is wrong: the loop of a random experiment is flagged without a fault, or with a
-  /// wrong CV or source; a CV of a named scenario is judged wrongly.
+  /// Is the answer wrong: is the loop of a random experiment flagged without a fault, or with a wrong CV or
+  /// source, or is a CV of a named scenario judged wrongly?
   bool wrong() const;
 };
 
-/// Throws nothing; every question is not judged without a verdict.
+/// Judges the answer of a method. Without a verdict no question is judged. Throws nothing.
 Judgement judge(const Study& study, const ExperimentRecord& record, const AssessmentRecord& assessment);
 
 /// The truth about the impact of a fault: some Ivar_basis (6.22), the variance of a CV over that in the same
@@ -79,21 +80,22 @@ Judgement judge(const Study& study, const ExperimentRecord& record, const Assess
 /// FaultCost::has_impact(). It does not depend on any method.
 bool has_impact(const DiagnosisOptions& options, const ExperimentRecord& record);
 
-/// The experiments over which the study counts what a method says about the source of a fault: those that it
-/// flags, or all with a verdict (diagnosis.source_population).
+/// Does the answer count in the rates of the source of a fault? Those that flag the loop do, or all with a
+/// verdict (diagnosis.source_population).
 bool in_source_population(const Study& study, const AssessmentRecord& assessment);
 
 /// The source that the answer gives for the whole loop: that of the located CV of a flagged loop. None if the
 /// loop is not flagged, the answer has no source, or the method names no sources.
 FaultSource named_source(const AssessmentRecord& assessment);
 
-/// Is this the source of a fault of this kind? Of a fault that is neither mismatch nor
-/// disturbance `other` is, and `none`.
+/// Is this the source of a fault of this kind? For a fault that is neither mismatch nor disturbance, both
+/// `other` and `none` are right.
 bool names_source(ExperimentKind fault, FaultSource named);
 
 /// True when the answer distinguishes the fault from the others (mismatch, disturbance, both, other). The
-/// loop must have a fault. Nothing said is not right. Of a fault that is neither of them the right answer is
-/// a flagged loop with the source `other`, or, by a method that has no word for it, without a source.
+/// loop must have a fault. An answer that says nothing is not right. For a fault that is neither mismatch nor
+/// disturbance, the right answer is a flagged loop with the source `other` or, from a method that has no word
+/// for it, without a source.
 bool tells_fault(const ExperimentRecord& record, const AssessmentRecord& assessment);
 
 /// The loops that a method should flag; it should flag no others.

@@ -23,7 +23,7 @@ namespace mpm {
 /// | other_cv_active | share of the samples in which a CV that the basis case has inside its range is   |
 /// |                 | at a soft limit or over it                                                       |
 /// | mv_at_limit     | share of the samples in which an MV that the basis case has free is at a hard    |
-/// |                 | limit                                                                            |
+/// |                 | limit or switched off                                                            |
 ///
 /// Each is NaN when it is not known.
 struct LoopConditions {
@@ -53,14 +53,14 @@ inline constexpr auto kWords<NonlinearCause> = word_list("none", "unstable", "ot
 /// "unstable loop", "another CV at a limit", "an MV at a limit", "none of these"
 std::string_view title_of(NonlinearCause cause);
 
-/// Does the cause hold for the loop, whatever others do? `none`: no other one does. What is not known is no
-/// cause.
+/// Does the cause hold for the loop, whether others hold or not? `none`: no other cause holds. A condition
+/// that is not known is no cause.
 bool has_cause(const LoopConditions& conditions, NonlinearCause cause);
 /// The first cause of the loop, in the order of kNonlinearCauses.
 NonlinearCause first_cause(const LoopConditions& conditions);
 
-/// The shares of a loop over the samples that it did, its radius left unknown. Not known of a controller
-/// without an active set (NominalSensitivity::is_known).
+/// The shares of a loop over the samples that it ran; its radius is left unknown. Nothing is known for a
+/// controller without an active set (NominalSensitivity::is_known).
 LoopConditions loop_conditions(const Study& study, const BasisCase& basis, const Trajectory& loop);
 
 }  // namespace mpm

@@ -21,20 +21,20 @@ class RecordRange {
 
   /// No records.
   RecordRange() : RecordRange(std::span<const ExperimentRecord>()) {}
-  /// These, which must outlive it.
+  /// These records, which must outlive the range.
   RecordRange(std::span<const ExperimentRecord> records);
   RecordRange(const std::vector<ExperimentRecord>& records)
       : RecordRange(std::span<const ExperimentRecord>(records)) {}
-  /// `size` of them, through which `begin` goes anew as often as it is called, and which `at`, where it can
-  /// be done without the others, reads alone.
+  /// `size` records. Each call of `begin` starts a new pass through them; `at`, if one record can be read
+  /// without the others, reads one alone.
   RecordRange(std::size_t size, std::function<Next()> begin, At at = nullptr)
       : size_(size), begin_(std::move(begin)), at_(std::move(at)) {}
 
   std::size_t size() const { return size_; }
-  /// Goes through them at the pace of the caller, who may stop before the end.
+  /// Starts a pass through the records at the pace of the caller, who may stop before the end.
   Next one_by_one() const { return begin_(); }
   void each(const Visit& visit) const;
-  /// The one at a place below size().
+  /// The record at this place, which is below size().
   ExperimentRecord at(std::size_t place) const;
 
  private:
@@ -43,10 +43,10 @@ class RecordRange {
   At at_;
 };
 
-/// Changes a record; called for one after the other, in the order of their index.
+/// Changes a record; called for one record after the other, in the order of their index.
 using RecordChange = std::function<void(ExperimentRecord&)>;
 
-/// These records, each changed when it is looked at: `begin` makes the change for one way through them.
+/// These records, each changed when it is read: `begin` makes the change for one pass through them.
 RecordRange changed(const RecordRange& records, const std::function<RecordChange()>& begin);
 
 /// Calls visit(one, other) for the experiments that are in both, in the order of their index.

@@ -41,7 +41,7 @@ Trajectory promised(const Study& repaired, const OperatingPoint& point, const As
   return run_closed_loop(repaired, repaired.plant.G, signals, factory);
 }
 
-/// The size that a method names is the correction.
+/// The repair in which the size that a method names is the correction.
 ChannelRepair of_size(const Study& study, const NamedMismatch& named) {
   const TransferFunction& model = study.plant.G(named.channel.cv, named.channel.mv);
   ChannelRepair repair{.channel = named.channel,

@@ -14,15 +14,15 @@
 
 namespace mpm {
 
-/// How a channel of the model is corrected. Where a method names the size of a mismatch with its interval,
-/// this size goes into the model: verdict and repair have one estimate. Otherwise the channel is identified
-/// again (fit_channel()), the one parameter that the method names or all of them.
+/// How a channel of the model is corrected. If a method names the size of a mismatch with its interval, this
+/// size goes into the model: verdict and repair share one estimate. Otherwise the channel is identified again
+/// (fit_channel()): only the parameter that the method names, or all parameters.
 struct ChannelRepair {
   Channel channel;
-  std::optional<NamedMismatch> named;          ///< by its size; none: identified again
-  std::optional<MismatchParameter> parameter;  ///< all else is as in the model; none: the whole channel
-  FittedNumber gain_factor, time_factor, dead_time_shift;  ///< against the model
-  double explained = kNaN;  ///< ChannelFit::explained; NaN of a size that a method names
+  std::optional<NamedMismatch> named;          ///< whose size is the correction; none: identified again
+  std::optional<MismatchParameter> parameter;  ///< the only one to change; none: the whole channel
+  FittedNumber gain_factor, time_factor, dead_time_shift;  ///< relative to the model
+  double explained = kNaN;  ///< ChannelFit::explained; NaN for a size that a method names
   TransferFunction model;   ///< of the channel, corrected
 
   RepairedChannel repaired() const { return {channel, model}; }
@@ -49,16 +49,16 @@ std::optional<ChannelRepair> channel_repair(const Study& study, const OperatingP
 /// | repaired  | the repaired one         | that of the experiment                           |
 /// | perfect   | the plant                | that of the experiment                           |
 ///
-/// `predicted` is all that is known in a plant: its errors are what the repaired model leaves of the record.
-/// Of a nonlinear plant `perfect` is the controller of the study on the plant without its mismatches.
-/// A vector is empty when its loop did not run to its end.
+/// `predicted` is all that can be known in a real plant: its errors are those that the repaired model leaves
+/// in the record. For a nonlinear plant, `perfect` is the controller of the study on the plant without its
+/// mismatches. A vector is empty if its loop did not run to its end.
 struct RepairedLoop {
   ChannelRepair repair;
   Eigen::VectorXd now, predicted, repaired, perfect;
 
   /// All loops of the comparison ran to their end.
   bool compares() const { return now.size() > 0 && repaired.size() > 0 && perfect.size() > 0; }
-  /// Mean over the CVs of a variance over that of the perfect controller: 1 is as good as can be.
+  /// Mean over the CVs of the variance relative to that with the perfect controller: 1 is as good as can be.
   double loss_now() const { return (now.array() / perfect.array()).mean(); }
   double loss_repaired() const { return (repaired.array() / perfect.array()).mean(); }
 };
@@ -81,8 +81,8 @@ PromisedRepair promised_repair(const Study& study, const OperatingPoint& point, 
                                const ChannelRepair& repair, const QpSolverFactory& factory,
                                const std::vector<bool>& counted = {});
 
-/// The channel that the method would have repaired: that of the mismatch it names, or of a method that names
-/// none the first channel that it flags. None of a loop that it does not flag.
+/// The channel that the method would have repaired: the channel of the mismatch that it names or, if it names
+/// none, the first channel that it flags. None if it does not flag the loop.
 std::optional<Channel> channel_to_repair(const AssessmentRecord& said);
 
 /// The same, whether it flags the loop or not.

@@ -14,7 +14,7 @@
 namespace mpm {
 namespace {
 
-/// A gain is one beyond chance when it is above so many of its standard errors.
+/// A gain is beyond chance if it is above this many of its standard errors.
 constexpr double kErrors = 2.0;
 
 /// The costs of the loops of one experiment under a model, loop by loop.
@@ -25,7 +25,8 @@ class RepairLoops {
 
   int count() const { return loops_; }
 
-  /// Runs those that `costs` lacks of the first `count`; empties it when one does not run to its end.
+  /// Runs those of the first `count` loops that `costs` lacks; empties `costs` if one does not run to its
+  /// end.
   void run(std::vector<double>& costs, int count, const TransferMatrix& model,
            const ExperimentDraw& draw) const {
     for (int loop = static_cast<int>(costs.size()); loop < count; ++loop) {
@@ -41,7 +42,7 @@ class RepairLoops {
     }
   }
 
-  /// Of all loops; `known` are those that have been run, all or none.
+  /// The costs of all loops; `known` are the costs of loops that have been run, all or none.
   std::vector<double> costs(const TransferMatrix& model, const ExperimentDraw& draw,
                             const std::vector<double>& known) const {
     const auto n = static_cast<std::ptrdiff_t>(loops_);
@@ -59,14 +60,14 @@ class RepairLoops {
   SolverStatistics& pilots_;
 };
 
-/// A channel, and the loops under a model in which it is right.
+/// A channel, and the costs of the loops under a model in which it is right.
 struct Repair {
   Channel channel;
   TransferMatrix model;
   std::vector<double> costs = {};
 };
 
-/// Of the repair after which the first loops cost `after`.
+/// The gain of the repair after which the first loops cost `after`.
 RatioOfMeans gain_of(const std::vector<double>& now, const std::vector<double>& after,
                      const std::vector<double>& without) {
   if (after.empty())
@@ -77,7 +78,7 @@ RatioOfMeans gain_of(const std::vector<double>& now, const std::vector<double>& 
   return ratio_of_means(saved, {without.begin(), without.begin() + std::ssize(after)});
 }
 
-/// Of every channel in which the plant differs from the model.
+/// The repairs of all channels in which the plant differs from the model.
 std::vector<Repair> repairs_of(const TransferMatrix& model, const TransferMatrix& plant) {
   std::vector<Repair> repairs;
   for (Eigen::Index cv = 0; cv < plant.rows(); ++cv)
@@ -89,7 +90,8 @@ std::vector<Repair> repairs_of(const TransferMatrix& model, const TransferMatrix
   return repairs;
 }
 
-/// Runs the first loop of each, and the others of those that bring at least `screen` times the most in it.
+/// Runs the first loop of each repair, and the other loops of the repairs whose gain in it is at least
+/// `screen` times the largest gain.
 void run_repairs(std::vector<Repair>& repairs, const RepairLoops& runs, const ExperimentDraw& draw,
                  double screen, const std::function<double(const Repair&)>& gain) {
   double most = -kInfinity;
@@ -118,7 +120,7 @@ double RepairGains::share_of(const std::optional<Channel>& channel) const {
   if (!channel)
     return 0.0;
   const double found = gain(channel->cv, channel->mv);
-  return found > 0.0 ? std::min(1.0, found / best().value()) : 0.0;  // not that of a NaN
+  return found > 0.0 ? std::min(1.0, found / best().value()) : 0.0;  // 0 for a NaN, too
 }
 
 RepairGains repair_gains(const Study& study, const ExperimentDraw& draw, int loops,
