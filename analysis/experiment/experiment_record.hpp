@@ -61,8 +61,8 @@ struct LoopTruth {
 /// mismatch alone and with the disturbance alone. The methods see the loop with both; from the other two the
 /// chain of the thesis says how much the mismatch dominates (FaultsAlone).
 ///
-/// In an experiment with a changed tuning the methods know the S0 of tuned_basis(), and an experiment whose
-/// controller does not run on its own model is infeasible.
+/// If the tuning is changed, the methods know the S0 of tuned_basis(). If the controller then does not run on
+/// its own model, the experiment is infeasible.
 struct ExperimentRecord {
   ExperimentDraw draw;
   ExperimentStatus status = ExperimentStatus::failed;

@@ -23,7 +23,7 @@ struct ChannelRepair {
   std::optional<MismatchParameter> parameter;  ///< the only one to change; none: the whole channel
   FittedNumber gain_factor, time_factor, dead_time_shift;  ///< relative to the model
   double explained = kNaN;  ///< ChannelFit::explained; NaN for a size that a method names
-  TransferFunction model;   ///< of the channel, corrected
+  TransferFunction model;   ///< the corrected model of the channel
 
   RepairedChannel repaired() const { return {channel, model}; }
 };
@@ -68,8 +68,8 @@ RepairedLoop repaired_loop(const Study& study, const OperatingPoint& point, cons
                            const AssessedLoop& loop, const ChannelRepair& repair,
                            const QpSolverFactory& factory);
 
-/// The gain of a repaired channel that a record alone predicts, as in a plant: variances of the CVs as in
-/// RepairedLoop, with the errors of the record under the model of the study (`now`) and under the repaired
+/// The gain of a repaired channel that a record alone predicts, as in a real plant: variances of the CVs as
+/// in RepairedLoop, with the errors of the record under the model of the study (`now`) and under the repaired
 /// model (`predicted`). If only some samples count, they are counted_costs() instead: the cost of a CV in its
 /// controller, over these samples.
 struct PromisedRepair {

@@ -14,8 +14,8 @@ namespace mpm {
 TransferMatrix true_plant(const Study& study, const ExperimentDraw& draw);
 
 /// The loop of the experiment under the controller of the study with another model: `model` instead of
-/// Study::plant. The plant, its faults, which are there from the first sample on, the noise and all other
-/// signals are those of the experiment.
+/// Study::plant. The plant, the noise and all other signals are those of the experiment; its faults are there
+/// from the first sample on.
 Trajectory loop_with_model(const Study& study, const TransferMatrix& model, ExperimentDraw draw,
                            const QpSolverFactory& factory);
 

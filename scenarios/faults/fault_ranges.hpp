@@ -64,7 +64,7 @@ struct MismatchRanges {
   /// channel.
   Distribution second_order = Distribution::uniform(0.2, 1.0);
   Distribution inverse_response = Distribution::uniform(0.2, 1.0);
-  /// Sizes are scaled until the loop has this effect (FaultScales); none: they are as drawn.
+  /// The effect to which sizes are scaled (FaultScales); none: sizes are as drawn.
   std::optional<Distribution> impact = {};
   std::vector<PlantParameterRange> plant_parameters = {};  ///< used instead of channels for a nonlinear plant
 
@@ -109,7 +109,7 @@ struct DisturbanceRanges {
   /// Relative frequency of each of kDisturbanceShapes and of kDisturbancePlaces.
   std::array<double, kDisturbanceShapes.size()> signal_weight{1.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   std::array<double, kDisturbancePlaces.size()> place_weight{1.0, 0.0, 0.0};
-  /// Gains are scaled until the loop has this effect (FaultScales); none: they are as drawn.
+  /// The effect to which gains are scaled (FaultScales); none: gains are as drawn.
   std::optional<Distribution> impact = {};
 
   bool operator==(const DisturbanceRanges&) const = default;

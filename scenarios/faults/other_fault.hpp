@@ -98,7 +98,7 @@ struct OtherRanges {
   /// Shift of both soft limits of a CV as a share of the range between them, with either sign; in CV units if
   /// a limit is missing.
   Distribution limit = Distribution::uniform(0.1, 0.5);
-  /// Sizes are scaled until the loop has this effect (FaultScales); none: they are as drawn.
+  /// The effect to which sizes are scaled (FaultScales); none: sizes are as drawn.
   std::optional<Distribution> impact = {};
 
   bool operator==(const OtherRanges&) const = default;

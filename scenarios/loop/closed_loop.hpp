@@ -31,8 +31,8 @@ struct SolverStatistics {
 /// What made a closed loop fail.
 enum class LoopFailure {
   none,
-  solver,           ///< it gave no answer
-  plant,            ///< it could not be integrated
+  solver,           ///< the solver gave no answer
+  plant,            ///< the plant could not be integrated
   no_steady_state,  ///< the plant cannot rest where the loop begins
   controller,       ///< the external controller program gave no move
 };

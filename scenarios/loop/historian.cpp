@@ -100,7 +100,7 @@ void draw_line(Eigen::RowVectorXd& signal, Eigen::Index a, Eigen::Index b) {
 Eigen::RowVectorXd compressed(const Eigen::Ref<const Eigen::RowVectorXd>& signal, double deviation) {
   Eigen::RowVectorXd read = signal;
   Eigen::Index archived = 0;
-  double lowest = -kInfinity;  // slopes of the lines from the archived point that pass all samples since
+  double lowest = -kInfinity;  // slopes from the archived point that fit all samples since within deviation
   double highest = kInfinity;
   for (Eigen::Index k = 1; k < signal.size(); ++k) {
     double distance = static_cast<double>(k - archived);

@@ -9,7 +9,7 @@
 #include "scenarios/study/study.hpp"
 
 // How a historian of the plant stores the measured CVs, and how its reader restores them. Methods of
-// assessment see a loop in this form; the controller and the truth have the measurements themselves.
+// assessment see a loop in this form; the controller and the truth use the measurements themselves.
 
 namespace mpm {
 

@@ -40,7 +40,8 @@ Eigen::MatrixXd measurement_noise(const Study& study, std::int64_t index);
 Eigen::RowVectorXd disturbance_signal(const DisturbanceSignal& signal, double standard_deviation,
                                       double sample_time, Eigen::Index samples, RandomStream white);
 
-/// y_d of `disturbance` as the first one of experiment `index`, from the start of the record on; 1 x samples.
+/// y_d of `disturbance` as if it were the first one of experiment `index`, from the start of the record on;
+/// 1 x samples.
 Eigen::RowVectorXd disturbance_output(const Study& study, std::int64_t index, const Disturbance& disturbance);
 
 /// The unmeasured disturbances of the experiment on every CV, ny x samples: the sum of y_d = G_d (a v), each

@@ -42,18 +42,18 @@ struct DataOptions {
   DateOrder date_order = DateOrder::automatic;
   std::vector<int> skip;  ///< lines of the file that are not read, from 1
   TableLayout layout = TableLayout::automatic;
-  std::string tag_column, value_column;  ///< of a long table; empty: those of usual names
+  std::string tag_column, value_column;  ///< of a long table; empty: those with usual names
   std::string separator;                 ///< one character; empty: found
   std::string decimal;                   ///< "." or ","; empty: found
   Names tags;               ///< columns of CVs, MVs and MDs; without one: the column with the variable's name
   Numbers operating_point;  ///< in the unit of the file; without one: 0
   Numbers scale;            ///< unit of the study over that of the file; without one: 1
-  Names setpoint;           ///< of CVs with a setpoint, as the CV is recorded
-  Names lower, upper;       ///< soft limits of CVs, as the CV is recorded
-  Names y_sim;              ///< output of the model, as the CV is recorded; without one: computed
-  Names target;             ///< of MVs, as the MV is recorded
-  Names quality;            ///< of any variable
-  Names mode;               ///< of CVs and MVs: does the controller have it?
+  Names setpoint;           ///< columns of the setpoints of CVs, recorded as the CV is
+  Names lower, upper;       ///< columns of the soft limits of CVs, recorded as the CV is
+  Names y_sim;              ///< columns of the model's output, recorded as the CV is; without one: computed
+  Names target;             ///< columns of the targets of MVs, recorded as the MV is
+  Names quality;            ///< columns of the quality of any variable
+  Names mode;               ///< columns of the mode of CVs and MVs: does the controller have it?
   std::vector<std::string> mode_on{"1", "on", "true", "auto", "cas", "rcas", "rout"};
   std::vector<std::string> good_quality{"good", "opc"};
   std::vector<std::string> stored_on_change;  ///< variables whose last value holds until the next one
@@ -63,7 +63,7 @@ struct DataOptions {
   RecordStart start = RecordStart::automatic;
   double most_missing = 0.3;            ///< share of the samples of a CV; beyond it the record is refused
   std::vector<std::string> candidates;  ///< columns of signals that the model does not know
-  GapFill fill = GapFill::none;         ///< value of a missing CV for the methods
+  GapFill fill = GapFill::none;         ///< what the methods see where a CV is missing
   std::vector<std::string> period;      ///< two time stamps; empty: the whole file
   std::vector<std::string> benchmark;   ///< two time stamps, "found" or "none"; empty: none is named
 

@@ -6,9 +6,9 @@
 
 namespace mpm {
 
-/// The shortest moving window, in samples. The mean and the variance of a window take away two of the numbers
-/// that a moment could depend on: two samples have skewness 0 and kurtosis 1, and three have kurtosis 3/2,
-/// whatever they are.
+/// The shortest moving window, in samples. The mean and the variance of a window use up two degrees of
+/// freedom of the higher moments: two samples have skewness 0 and kurtosis 1, and three have kurtosis 3/2,
+/// whatever their values are.
 inline constexpr int kShortestWindow = 4;
 
 /// A window length takes part in a mean only with this many pairs of moments: below it, chance alone makes a

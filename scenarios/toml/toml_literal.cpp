@@ -10,7 +10,7 @@
 namespace mpm {
 namespace {
 
-constexpr std::size_t kNumbersOnLine = 50;  // parse_toml() takes kMaxDotsInKey dots
+constexpr std::size_t kNumbersOnLine = 50;  // fewer than kMaxDotsInKey, the dots that parse_toml() takes
 
 bool may_stand_in_bare_key(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';

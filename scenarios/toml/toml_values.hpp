@@ -12,9 +12,9 @@
 #include "scenarios/random/distribution.hpp"
 #include "scenarios/toml/number_rule.hpp"
 
-// Typed reading of the values of a TOML table. All functions refuse a value they cannot take as TomlTable
-// does. Those ending in `_or` return their last argument for a missing key; the others refuse it. What they
-// return is recorded (TomlTable::record()).
+// Typed reading of the values of a TOML table. All functions refuse a value that they cannot take, as
+// TomlTable does. Those ending in `_or` return their last argument for a missing key; the others refuse it.
+// What they return is recorded (TomlTable::record()).
 
 namespace mpm {
 
