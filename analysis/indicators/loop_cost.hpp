@@ -13,7 +13,8 @@ namespace mpm {
 ///
 /// | symbol | member    | size | equation                                                          |
 /// |--------|-----------|------|-------------------------------------------------------------------|
-/// | J      | cv        | ny   | Q_y (y - y_set)^2 + tau_y v^2, v the distance outside the soft limits |
+/// | J      | cv        | ny   | Q_y (y - y_set)^2 + tau_y v^2 + c v, v the distance outside the   |
+/// |        |           |      | soft limits and c the slack cost of the CV, if it has one         |
 /// | v      | violation | ny   | mean distance outside the soft limits, in the unit of the CV      |
 /// |        | effort    |      | sum over the MVs of Q_du (u(k) - u(k-1))^2                        |
 /// |        | economics |      | phi_u u, the objective of the target optimizer (6.19)             |

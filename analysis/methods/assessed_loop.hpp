@@ -25,7 +25,8 @@ namespace mpm {
 /// |        |        |        | analyser of the CV took none: analyses stand where the        |
 /// |        |        |        | stream was sampled, not where they became known               |
 /// | u      | u      | nu x N | MVs, u(k) acts from sample k on                               |
-/// | u_target | u_target | nu x N | targets of the optimizer; zero without one               |
+/// | u_target | u_target | nu x N | targets of the optimizer; of a record without targets the |
+/// |        |        |        | operating point                                               |
 /// | d      | d      | nd x N | measured disturbances, d(k) acts from sample k on             |
 /// | y_sim  | y_sim  | ny x N | G0 (u, d)                                              (6.4)  |
 /// | y_set  | y_set  | ny x N | setpoints; NaN for a CV without one, see AssessmentSetpoints  |

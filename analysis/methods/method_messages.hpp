@@ -68,6 +68,7 @@ nlohmann::ordered_json answer_json(const Assessment& assessment, const PlantMode
 /// | cv_flagged, cv_score, cv_source | lists of ny instead of these two; null: no verdict on the CV  |
 /// | channels       | [["y1", "u2"], ...]: the named channels of the model                             |
 /// | mismatch       | {"channel", "parameter", "size", "lower", "upper"}; the last three may be absent |
+/// | probabilities  | {"none", "mpm", "ud", "mpm_ud", "other"}: numbers from 0 to 1 that add up to 1   |
 /// | candidate      | number of the logged signal that drives the disturbance, from 1                  |
 /// | numbers        | {"name": value}: numbers of the description; lists by CV, lists of lists by channel |
 /// | error, not_applicable | instead of all other keys: why there is no verdict                      |

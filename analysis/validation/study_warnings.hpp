@@ -23,6 +23,7 @@ std::string to_string(const StudyWarning& warning);
 /// Returns warnings about what the study itself shows. T is the sum of the time constants of a channel from
 /// an MV, theta its dead time, theta + 3 T its settling time (95 % of a step of a first-order channel).
 ///
+/// - `plant.channel[].step`: a channel from step coefficients that the transfer function fits badly.
 /// - `controller.sample_time`: above the smallest T, or above every dead time.
 /// - `controller.prediction_horizon`: shorter than the longest settling time.
 /// - `simulation.samples`: a record shorter than three settling times; fewer than 100 samples.

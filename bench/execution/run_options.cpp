@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "analysis/findings/study_findings.hpp"
 #include "analysis/methods/method_table.hpp"
@@ -29,7 +30,10 @@ StorePolicy store_policy(const std::string& name, const std::string& place) {
   for (const auto& [known, policy] : store_policies())
     if (known == name)
       return policy;
-  throw InputError(place, name, "none, flagged or all");
+  std::vector<std::string> names;
+  for (const auto& policy : store_policies())
+    names.push_back(policy.first);
+  throw InputError(place, name, fmt::format("{}", fmt::join(names, ", ")));
 }
 
 Study study_to_run(Study study, const RunOptions& options) {

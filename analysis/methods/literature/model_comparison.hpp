@@ -18,13 +18,11 @@ struct PlantAndNoise {
 /// | b_0       | b           | m     | by `refined_groups`                        |
 /// | C_0       | covariance  | m x m | of b_0; large in directions that the period leaves open |
 /// | v         | v           | N     | noise                                      |
-/// | p_0       | order       |       | of its autoregression, by BIC              |
 /// | sigma_0^2 | variance    |       | of its innovations                         |
 struct HealthyModel {
   Eigen::VectorXd b;
   Eigen::MatrixXd covariance;
   Eigen::VectorXd v;
-  Eigen::Index order = 0;
   double variance = 0.0;
   Eigen::Index freedom = 0;
 };

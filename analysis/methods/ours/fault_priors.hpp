@@ -57,8 +57,8 @@ struct CvPrior {
 /// | wide     | each CV by itself, `fault_probability` | what a plant may have       | the benchmark's |
 /// | study    | as the study draws them                | as the study draws them     | the study's     |
 ///
-/// `fault_probability` is the probability that some CV has a fault; the wide sizes are wide_priors(), and the
-/// noise of the benchmark is known within a factor of about two.
+/// `fault_probability` is the probability that some CV has a fault. The noise of the benchmark is known
+/// within a factor of about two.
 struct FaultPriorSet {
   std::vector<CvPrior> cvs;  ///< ny
   /// Weights against 1 for nothing, with wide priors. `input` is that of a disturbance on each MV, and of a
