@@ -30,7 +30,7 @@ STUBS = {
     "git": 'echo "git $*" >>"$CALLS"\n'
            f'case "$*" in *rev-parse*) echo {COMMIT} ;; clone*"$CLONED_FROM mpmbench") cp -r "$TREE" mpmbench ;; *) exit 1 ;; esac',
     "curl": 'echo "curl $*" >>"$CALLS"\ncp "${4#https://releases.example/}" "$3"',
-    "docker": '[ "$1" = info ] && exit\necho "docker $1" >>"$CALLS"\n[ "$1" = build ] && exit\n'  # run --rm -v FOLDER:/work mpmbench WORDS
+    "podman": '[ "$1" = info ] && exit\necho "podman $1" >>"$CALLS"\n[ "$1" = build ] && exit\n'  # run --rm -v FOLDER:/work mpmbench WORDS
               'cd "${4%:/work}" && shift 5 && exec mpmbench "$@"',
     "mpmbench": 'echo "mpmbench $1" >>"$CALLS"\ncase "$1 $2" in "run chapter6") ;; run*) set -- "$@" --experiments 8 ;; '
                 'suite*) set -- "$@" --experiments 2 --plants wood-berry --families exact ;; esac\nexec "$MPMBENCH" "$@"',
@@ -164,7 +164,7 @@ def check_own_jobs(machine):
             assert command in (None, "apt-get") or (machine.sources / command).is_file(), command
         assert GithubJob(machine, job, {}, machine.tree).run() == 0
     assert "chapter6: " in (machine.folder / "summary.md").read_text()
-    assert machine.called("docker") == 4
+    assert machine.called("podman") == 4
 
 
 def check_gated_method(machine, run):
