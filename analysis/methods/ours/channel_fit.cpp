@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <fmt/format.h>
 
 #include "analysis/identification/autoregression.hpp"
@@ -30,7 +32,8 @@ constexpr int kNoiseRounds =
 constexpr double kLargestTimeFactor = 8.0;
 /// The steps at which a search ends, as a share of its first steps.
 constexpr double kFinestStep = 1.0 / 1024;
-constexpr int kBisections = 16;
+constexpr double kFinestEnd = 1.0 / 65536;  ///< of the end of an interval, as a share of its range
+constexpr std::uintmax_t kMostEvaluations = 32;
 /// The points of the grid, as shares of the ranges of the search. A share of a shift below 0 stands for no
 /// shift.
 constexpr std::array kTimesOfGrid{-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75};
@@ -100,13 +103,11 @@ class ChannelSearch {
   /// The channel as the model has it, with its onset in the middle of the possible range.
   Point of_model() const { return {0.0, 0.0, 0.5 * (least_[kOfOnset] + largest_[kOfOnset]), 0.0}; }
 
-  /// Fits the noise to what is left by the channel at `point` and by what is unknown beside it.
+  /// Fits the noise to what the channel at `point` leaves, all that is unknown beside it included. Without it
+  /// the noise would lack the slow disturbances that the unknown part takes along: under the seeds 84 and 101
+  /// of tests/reliability/records.py gains were closer to the truth, but only 80 % of the intervals held it.
   void fit_noise(const Point& point) {
-    const Whitened white = whitened(point);
-    const double gain = gain_of(white);
-    Eigen::VectorXd n = target(point) - gain * part(point).cwiseProduct(response(point));
-    if (Z_.cols() > 0)
-      n -= Z_ * inner_.solve(W_.transpose() * (white.z - gain * white.x).head(W_.rows())) / deviation_;
+    const Eigen::VectorXd n = target(point) - gain_at(point) * part(point).cwiseProduct(response(point));
     Autoregression noise = fit_autoregression(n, autoregression_order(n, kLargestNoiseOrder));
     const Eigen::VectorXd w = noise.whitened(n);
     take(std::move(noise), std::sqrt((w.array() - w.mean()).square().mean()));
@@ -148,15 +149,16 @@ class ChannelSearch {
     point = start;
   }
 
-  double gain_at(const Point& point) const { return gain_of(whitened(point)); }
+  double gain_at(const Point& point) const { return gain_of(products_at(point)); }
 
   /// The sum of squares of the model without any change.
   double squares_of_model() const { return squares(of_model(), 1.0); }
 
   /// The least sum of squares at a point, with this factor of the gain or with the best one.
   double squares(const Point& point, std::optional<double> gain) const {
-    const Whitened white = whitened(point);
-    return (white.z - gain.value_or(gain_of(white)) * white.x).squaredNorm();
+    const Eigen::Matrix2d products = products_at(point);
+    const double g = gain.value_or(gain_of(products));
+    return products(0, 0) - 2.0 * g * products(0, 1) + g * g * products(1, 1);
   }
 
   /// A pattern search (Hooke and Jeeves 1961) from `start` over those numbers that are free.
@@ -191,12 +193,8 @@ class ChannelSearch {
   const Autoregression& whiteness() const { return whiteness_; }
 
  private:
-  struct Whitened {
-    Eigen::VectorXd z, x;
-  };
-
-  double gain_of(const Whitened& white) const {
-    return freedom_.gain ? white.x.dot(white.z) / white.x.squaredNorm() : 1.0;
+  double gain_of(const Eigen::Matrix2d& products) const {
+    return freedom_.gain ? products(0, 1) / products(1, 1) : 1.0;
   }
 
   void take(Autoregression noise, double deviation) {
@@ -220,26 +218,34 @@ class ChannelSearch {
   /// e + r (G0 u)
   Eigen::VectorXd target(const Point& point) const { return e_ + part(point).cwiseProduct(of_model_); }
 
-  Eigen::VectorXd response(const Point& point) const {
-    const TransferFunction channel =
-        nominal_.with_time_scaled(std::exp(point[kOfTime])).with_dead_time_shifted(point[kOfShift]);
-    return simulated_output(TransferMatrix{{channel}}, sample_time_, Eigen::VectorXd::Constant(1, u_start_),
-                            u_.transpose(), Eigen::MatrixXd(0, u_.size()))
-        .row(0);
+  /// The response of the channel at a point. It is kept, since most points of a search differ in the onset
+  /// only.
+  const Eigen::VectorXd& response(const Point& point) const {
+    if (response_.size() == 0 || responds_[kOfTime] != point[kOfTime] ||
+        responds_[kOfShift] != point[kOfShift]) {
+      const TransferFunction channel =
+          nominal_.with_time_scaled(std::exp(point[kOfTime])).with_dead_time_shifted(point[kOfShift]);
+      response_ =
+          simulated_output(TransferMatrix{{channel}}, sample_time_, Eigen::VectorXd::Constant(1, u_start_),
+                           u_.transpose(), Eigen::MatrixXd(0, u_.size()))
+              .row(0);
+      responds_ = point;
+    }
+    return response_;
   }
 
-  /// Both sides behind A(q), about their means, and without what is unknown. With c = (I + W'W)^-1 W'w each
-  /// becomes w - W c with -c below it, so that products are those under I + W W'.
-  Whitened whitened(const Point& point) const {
+  /// Products of the target and the response with each other, both behind A(q) and about their means, under
+  /// I + W W': with w such a signal, w' (I + W W')^-1 w = w' w - (W' w)' (I + W' W)^-1 W' w.
+  Eigen::Matrix2d products_at(const Point& point) const {
     Eigen::MatrixXd both(u_.size(), 2);
     both << target(point), part(point).cwiseProduct(response(point));
-    Eigen::MatrixXd white = centred(whiteness_.whitened(both));
-    if (Z_.cols() == 0)
-      return {white.col(0), white.col(1)};
-    const Eigen::MatrixXd coefficients = inner_.solve(W_.transpose() * white);
-    Eigen::MatrixXd left(white.rows() + W_.cols(), 2);
-    left << white - W_ * coefficients, -coefficients;
-    return {left.col(0), left.col(1)};
+    const Eigen::MatrixXd white = centred(whiteness_.whitened(both));
+    Eigen::Matrix2d products = white.transpose() * white;
+    if (Z_.cols() > 0) {
+      const Eigen::MatrixXd Ww = W_.transpose() * white;
+      products -= Ww.transpose() * inner_.solve(Ww);
+    }
+    return products;
   }
 
   const TransferFunction& nominal_;
@@ -255,19 +261,25 @@ class ChannelSearch {
   double deviation_ = 1.0;             ///< of w
   Eigen::MatrixXd W_;                  ///< Z behind A(q), about its mean, in deviations of w
   Eigen::LLT<Eigen::MatrixXd> inner_;  ///< I + W' W
+  mutable Eigen::VectorXd response_;   ///< of the channel at `responds_`; empty: of none yet
+  mutable Point responds_{};
 };
 
-/// The end of an interval, between `inside`, where `excess` is not above 0, and `bound`. It is the bound if
-/// `excess` is not above 0 there either.
-double interval_end(double inside, double bound, const std::function<double(double)>& excess) {
-  if (excess(bound) <= 0.0)
+/// The end of an interval, between `inside`, where `excess` is `of_inside` and below 0, and `bound`. It is
+/// the bound if `excess` is not above 0 there either. Algorithm 748 of Alefeld, Potra and Shi (1995).
+double interval_end(double inside, double of_inside, double bound,
+                    const std::function<double(double)>& excess) {
+  const double of_bound = excess(bound);
+  if (of_bound <= 0.0)
     return bound;
-  double outside = bound;
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    (excess(middle) <= 0.0 ? inside : outside) = middle;
-  }
-  return outside;
+  const bool rises = bound > inside;
+  const double width = std::abs(bound - inside);
+  std::uintmax_t steps = kMostEvaluations;
+  const auto [low, high] = boost::math::tools::toms748_solve(
+      excess, rises ? inside : bound, rises ? bound : inside, rises ? of_inside : of_bound,
+      rises ? of_bound : of_inside, [width](double a, double b) { return b - a <= kFinestEnd * width; },
+      steps);
+  return rises ? high : low;
 }
 
 /// A bound of the gain that lies outside of its interval.
@@ -309,7 +321,7 @@ ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
   const double gain = search.gain_at(point);
   const double least = search.squares(point, gain);
   const auto samples = static_cast<double>(search.whiteness().rows.size());
-  const double limit = chi_squared_quantile(confidence, 1.0);
+  const double limit = chi_squared_quantile(confidence, 1.0) * beside.widening * beside.widening;
   const auto excess = [&](double squares) { return samples * std::log(squares / least) - limit; };
   const auto of_gain = [&](double value) {
     return excess(search.squares(search.searched(point, value, {true, true, true, true}), value));
@@ -324,10 +336,14 @@ ChannelFit fit_channel(const TransferFunction& nominal, double sample_time,
     };
   };
   const auto end = [&](std::size_t number, double bound) {
-    return freedom.numbers[number] ? interval_end(point[number], bound, of_number(number)) : point[number];
+    return freedom.numbers[number] && beside.asks_intervals
+               ? interval_end(point[number], -limit, bound, of_number(number))
+               : point[number];
   };
   const auto gain_end = [&](double direction) {
-    return freedom.gain ? interval_end(gain, outer_gain(gain, direction, of_gain), of_gain) : gain;
+    return freedom.gain && beside.asks_intervals
+               ? interval_end(gain, -limit, outer_gain(gain, direction, of_gain), of_gain)
+               : gain;
   };
   const auto bound_of_number = [&](std::size_t number) {
     return bound_within(point[number], search.least()[number], search.largest()[number]);

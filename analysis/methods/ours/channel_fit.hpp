@@ -41,6 +41,8 @@ struct FitSurroundings {
     Eigen::Index earliest, latest, longest_growth;
   };
   std::optional<Onset> onset = {};
+  bool asks_intervals = true;  ///< no: each value is its own interval
+  double widening = 1.0;       ///< factor of the intervals if the noise is no autoregression
 };
 
 /// Identifies the channel G of one CV again. With G0 its model, e the simulation error of the CV and u the
