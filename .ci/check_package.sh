@@ -8,7 +8,7 @@ set -euo pipefail
 # shellcheck source=.ci/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-mpm_install build
+mpm_install package
 mpm_build all
 
 work=$(mktemp -d)

@@ -3,7 +3,7 @@
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
-# mpm_packages build|test|perf|instruments: the packages that this work needs, one a line; each includes those of `build`.
+# mpm_packages build|test|package|perf|instruments: the packages that this work needs, one a line; each includes those of `build`.
 mpm_packages() {
   awk -v work="$1" '/^[^#]/ && NF && ($2 == "build" || $2 == work) { print $1 }' "$root/.ci/packages.txt"
 }

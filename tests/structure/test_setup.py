@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 REAL_PROGRAMS = ["awk", "bash", "dirname", "env"]
 INSTALL = "apt-get install -y -q --no-install-recommends -o DPkg::Lock::Timeout=300"
 
-WORKS = ("build", "test", "perf", "instruments")
+WORKS = ("build", "test", "package", "perf", "instruments")
 
 # Everything is installed but what $MISSING names.
 DPKG_QUERY = 'for package; do :; done\n[[ " $MISSING " != *" $package "* ]] && echo -n installed'
