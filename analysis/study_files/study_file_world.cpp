@@ -148,7 +148,7 @@ OptionKeys world_keys(WorldRanges& ranges, const Study& study) {
                             "added to the dead time of a channel; a negative sum becomes 0", "time")
               .also(kNoLongMemory),
           key::distribution("extra_lag", ranges.extra_lag, rule,
-                            "time constant of a further lag, as a multiple of the sum of the time constants", "1")
+                            "time constant of a further lag, over the sum of those of the channel", "1")
               .also(kNoLongMemory),
           key::distribution("noise_factor", ranges.noise_factor, rule,
                             "factor of the measurement noise of a CV, in the benchmark as well", "1"),

@@ -1,9 +1,14 @@
 #include <catch2/catch.hpp>
 
+#include "analysis/methods/assessed_loop.hpp"
+#include "analysis/methods/ours/repair_prospects.hpp"
 #include "analysis/study_files/study_file.hpp"
 #include "bench/campaign/campaign_runner.hpp"
 #include "bench/campaign/comparison_runner.hpp"
+#include "bench/execution/thread_solvers.hpp"
 #include "results/archive/record_bytes.hpp"
+#include "scenarios/loop/historian.hpp"
+#include "solvers/qp_solver_factory.hpp"
 #include "tests/bench/serial_campaign.hpp"
 
 // Ipopt may run in one thread of a process only, so that threads leave to processes what needs it.
@@ -167,6 +172,29 @@ TEST_CASE("left to Ipopt: the loops of a method that is asked about those of a c
                           whole = serial.records[i].assessments.front().values("gain");
     CHECK((asked.array() == whole.array() || (asked.array().isNaN() && whole.array().isNaN())).all());
   }
+}
+
+TEST_CASE("left to Ipopt: what repairs bring, with the loops in threads") {
+  const Study study = parse_study(kStudy, "left-to-ipopt");
+  RunOptions options = options_of({"sse"}, Parallel::threads);
+  options.jobs = 2;
+  const Campaign campaign = run_serially(study, options);
+  const ExperimentRecord& record = campaign.records[1];
+  const AssessedLoop loop =
+      assessed_loop(campaign.study, campaign.basis.point,
+                    recorded(campaign.study, record.draw.index, record.loop->trajectory));
+  const auto found = [&](const ForEachWithSolver& for_each) {
+    return RepairProspects(campaign.study, campaign.basis.point, for_each).of(loop).value();
+  };
+  const auto serial = found(in_turn(qp_solver_factory("auto"))), threads = found(in_threads(study, options)),
+             without = found(in_turn(qp_solver_factory("active-set")));
+  REQUIRE(serial.size() == threads.size());
+  bool needs_ipopt = false;
+  for (std::size_t i = 0; i < serial.size(); ++i) {
+    CHECK(serial[i].gains == threads[i].gains);
+    needs_ipopt = needs_ipopt || serial[i].gains != without[i].gains;
+  }
+  CHECK(needs_ipopt);
 }
 
 }  // namespace

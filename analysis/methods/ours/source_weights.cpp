@@ -175,11 +175,11 @@ RecordSource heaviest(const SourceWeights& weights) {
 }
 
 NamedSource named_source(const SourceWeights& weights) {
-  const RecordSource best = heaviest(weights);
-  const bool drifts = best == RecordSource::sensor && weights.drift > 0.0;
-  const bool is_disturbance =
-      drifts && weights.of[RecordSource::disturbance] >= weights.of[RecordSource::sensor];
-  return {is_disturbance ? RecordSource::disturbance : best, drifts};
+  const bool drifts = weights.drift > 0.0 && heaviest(weights) == RecordSource::sensor;
+  if (!drifts)
+    return {largest(weights.of)};
+  const bool is_sensor = weights.of[RecordSource::sensor] > weights.of[RecordSource::disturbance];
+  return {is_sensor ? RecordSource::sensor : RecordSource::disturbance, drifts};
 }
 
 SourceWeights with_none_of_these(SourceWeights weights, double r) {

@@ -42,7 +42,8 @@ SourceWeights with_comparison(const OfSources& weights, const FaultLikelihoods& 
 /// if no source has a weight.
 RecordSource heaviest(const SourceWeights& weights);
 
-/// The source that the weights name: the heaviest one or, for a drift, the heavier one of its causes.
+/// The source that the weights name. If a drift outweighs all others, it is the heavier one of its causes;
+/// otherwise it is the source with the largest weight, its part of a drift included.
 struct NamedSource {
   RecordSource source = RecordSource::unknown;
   bool drifts = false;  ///< by either of its causes

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,7 @@ namespace {
 struct ProspectsCase {
   Study study = find_study("setpoint-methods");
   BasisCase basis = run_basis_case(study, testing::kFactory);
-  RepairProspects prospects{study, basis.point, testing::kFactory};
+  RepairProspects prospects{study, basis.point, in_turn(testing::kFactory)};
 
   AssessedLoop loop_of(const std::vector<Mismatch>& mismatches) const {
     ExperimentDraw draw = basis_draw();
@@ -70,6 +71,25 @@ TEST_CASE("repair prospects: a given repair is judged as it is, and one that doe
   CHECK(none.variance_ratio.isOnes(0.0));
   CHECK(wrong.gain() < 0.0);
   CHECK_FALSE(wrong.is_proposed());
+}
+
+TEST_CASE("repair prospects: neither the order of the loops nor that some are run twice changes a bit") {
+  const ProspectsCase setpoints;
+  const AssessedLoop loop = setpoints.loop_of(wrong_gain());
+  const auto backwards = [](std::size_t count, const auto& body) {
+    for (int round = 0; round < 2; ++round)
+      for (std::size_t i = count; i > 0; --i)
+        body(i - 1, testing::kFactory);
+  };
+  const std::vector<RepairProspect> in_order = *setpoints.prospects.of(loop),
+                                    reversed =
+                                        *RepairProspects(setpoints.study, setpoints.basis.point, backwards)
+                                             .of(loop);
+  REQUIRE(in_order.size() == reversed.size());
+  for (std::size_t i = 0; i < in_order.size(); ++i) {
+    CHECK(in_order[i].gains == reversed[i].gains);
+    CHECK(in_order[i].variance_ratio == reversed[i].variance_ratio);
+  }
 }
 
 TEST_CASE("repair prospects: gaps change little, and with hardly a sample there are none") {
