@@ -37,10 +37,14 @@ std::string words_markdown(std::string_view words) {
 std::string number_markdown(const Number& number) {
   if (!std::isfinite(number.value))
     return "-";
+  const bool in_percent = number.form != NumberForm::fixed && number.form != NumberForm::digits;
+  const double unit = in_percent ? 100.0 : 1.0;
+  const int decimals = number.form == NumberForm::whole_percent ? 0 : in_percent ? 1 : 2;
   const auto [lower, upper] = number.interval;
-  if (number.form == NumberForm::share || number.form == NumberForm::percent)
-    return fmt::format("{:.1f} ({:.0f} to {:.0f})", 100 * number.value, 100 * lower, 100 * upper);
-  return fmt::format("{:.2f} ({:.2f} to {:.2f})", number.value, lower, upper);
+  const std::string text = fmt::format("{:.{}f}", unit * number.value, decimals);
+  return std::isnan(lower) ? text
+                           : fmt::format("{} ({:.{}f} to {:.{}f})", text, unit * lower, in_percent ? 0 : 2,
+                                         unit * upper, in_percent ? 0 : 2);
 }
 
 std::string cell_markdown(const Cell& cell) {

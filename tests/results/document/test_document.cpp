@@ -7,6 +7,7 @@
 
 #include "results/document/document.hpp"
 #include "results/document/document_html.hpp"
+#include "results/document/document_markdown.hpp"
 #include "results/document/document_text.hpp"
 #include "results/document/words.hpp"
 #include "results/plot/plot_text.hpp"
@@ -43,6 +44,11 @@ TEST_CASE("document: a number has its interval and what it rests on, in both for
   section.add(marked);
   CHECK_THAT(document_html({.sections = {section}}), Contains("94*<br><small>90 to 97</small>"));
   CHECK_THAT(table_text(marked), Contains("94 [90, 97]*"));
+  marked.row({"alone", Cell{Number{0.94, NumberForm::whole_percent}}});
+  Section both{"a", ""};
+  both.add(marked);
+  const std::string markdown = document_markdown({.sections = {both}});
+  CHECK_THAT(markdown, Contains("| 94 (90 to 97)* |") && Contains("| alone | 94 |"));
   CHECK(number_text(Number{1234567.0}) == "1.23e+06");
 }
 
