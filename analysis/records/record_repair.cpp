@@ -79,6 +79,12 @@ NamedMismatch mismatch_of(const ChannelRepair& repair) {
              : NamedMismatch{repair.channel, parameter, size->value, size->lower, size->upper, size->bound};
 }
 
+/// Is the parameter that is named perhaps that of the model? Then there is no mismatch beside a disturbance.
+bool is_as_modelled(const NamedMismatch& mismatch) {
+  return is_fitted_alone(mismatch.parameter) &&
+         mismatch.holds(mismatch.parameter == MismatchParameter::dead_time ? 0.0 : 1.0);
+}
+
 }  // namespace
 
 void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictEvidence& evidence) {
@@ -93,6 +99,10 @@ void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictE
     if (const auto repair =
             evidence.md < 0 ? repair_of(assessment, loop, frame, evidence.likeliest) : std::nullopt) {
       evidence.mismatch = mismatch_of(*repair);
+      if (assessment.verdict.model.source == RecordSource::both && is_as_modelled(*evidence.mismatch)) {
+        std::swap(evidence.weights.of[RecordSource::both], evidence.weights.of[RecordSource::disturbance]);
+        return;
+      }
       assessment.repair = promised_repair(study, point, loop, *repair, frame.factory, counted);
       assessment.information =
           channel_information(study, loop, repair->channel,

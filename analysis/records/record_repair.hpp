@@ -9,7 +9,8 @@
 namespace mpm {
 
 /// If the verdict is about the model, adds to the assessment what the corrected channel promises, and what
-/// the repair of each channel would bring.
+/// the repair of each channel would bring. A mismatch beside a disturbance whose parameter may be that of the
+/// model is none: the disturbance alone then has the weight of both.
 void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictEvidence& evidence);
 
 /// Returns whether only the usual background is left once the channel of the repair is corrected. If the

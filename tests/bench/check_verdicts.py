@@ -9,6 +9,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "reliability"))
+import records  # noqa: E402
+
 
 class Bench:
     def __init__(self, program, folder, scratch):
@@ -89,6 +92,12 @@ def check_both(bench):
     assert answer["model"]["answer"] == "fails" and answer["model"]["source"] in ("both", "disturbance"), answer["model"]
 
 
+def check_disturbance_alone(bench):
+    """A mismatch beside a disturbance whose parameter may be that of the model is none."""
+    said = records.assessed(bench.program, bench.scratch, "isp-reactor", "output", 99143, 0, False)
+    assert said["said"] == "disturbance" and said["named"] is None, said
+
+
 def check_drift(bench):
     """A sensor that drifts is no valve that sticks, and a disturbance that grows would look the same."""
     answer = bench.assess("hx", "drift-301")
@@ -140,6 +149,7 @@ def main(program, folder):
         bench = Bench(program, pathlib.Path(folder), pathlib.Path(scratch))
         check_mismatch_without_cost(bench)
         check_both(bench)
+        check_disturbance_alone(bench)
         check_drift(bench)
         check_stuck(bench)
         check_averages(bench)
