@@ -112,42 +112,42 @@ std::vector<ChannelHistory> channel_histories(const ChannelErrorFit& fit, Eigen:
 }
 
 std::optional<FaultOnset> fault_onset(const ChannelErrorFit& fit, double threshold) {
-  constexpr Eigen::Index kTriedOnsets = 60, kFewest = 3;
+  constexpr Eigen::Index kMostOnsets = 60, kFewest = 3;
   constexpr double kSpread = 10.0, kSure = 0.95, kTail = 0.025, kMuch = 0.5;
   constexpr double kLeast = 0.25;  // of the noise of differences
   const auto n = static_cast<Eigen::Index>(fit.samples.size());
-  if (n < 4 * kTriedOnsets || fit.errors.empty())
+  if (n < 4 * kMostOnsets || fit.errors.empty())
     return std::nullopt;
   const auto sample = [&fit, n](Eigen::Index block) {
-    return block < kTriedOnsets ? fit.samples[static_cast<std::size_t>(n * block / kTriedOnsets)]
+    return block < kMostOnsets ? fit.samples[static_cast<std::size_t>(n * block / kMostOnsets)]
                                 : fit.samples.back() + 1;
   };
   const auto errors_of = [&fit](Eigen::Index first, Eigen::Index end) {
     return fit_of(sums_between(fit, first, end), fit.noise);
   };
-  const ChannelErrorSums all = sums_between(fit, sample(0), sample(kTriedOnsets));
+  const ChannelErrorSums all = sums_between(fit, sample(0), sample(kMostOnsets));
   const double least = kLeast * fit.noise;
-  Eigen::VectorXd log_posterior = Eigen::VectorXd::Constant(kTriedOnsets, -kInfinity);
+  Eigen::VectorXd log_posterior = Eigen::VectorXd::Constant(kMostOnsets, -kInfinity);
   Eigen::Index best = 0;
   double top = 0.0;
   for (int pass = 0; pass < 2; ++pass) {
     // The best cut of the first pass tells the noise, and the noise tells how much a sample is worth.
     const double weight = pass == 0 ? 1.0
                                     : independent_share(fit, errors_of(sample(0), sample(best)).a,
-                                                        errors_of(sample(best), sample(kTriedOnsets)).a,
-                                                        n * best / kTriedOnsets);
+                                                        errors_of(sample(best), sample(kMostOnsets)).a,
+                                                        n * best / kMostOnsets);
     const double whole =
         std::max(part_evidence(all, kSpread, least, weight), part_evidence(all, 1.0, least, weight));
     ChannelErrorSums earlier = all, later = all;
     earlier -= all;
-    for (Eigen::Index block = 1; block < kTriedOnsets; ++block) {
+    for (Eigen::Index block = 1; block < kMostOnsets; ++block) {
       const ChannelErrorSums moved = sums_between(fit, sample(block - 1), sample(block));
       earlier += moved;
       later -= moved;
-      if (block >= kFewest && block <= kTriedOnsets - kFewest)
+      if (block >= kFewest && block <= kMostOnsets - kFewest)
         log_posterior(block) = part_evidence(earlier, 1.0, least, weight) +
                                part_evidence(later, kSpread, least, weight) - whole -
-                               std::log(static_cast<double>(kTriedOnsets));
+                               std::log(static_cast<double>(kMostOnsets));
     }
     top = log_posterior.maxCoeff(&best);
   }
@@ -160,16 +160,16 @@ std::optional<FaultOnset> fault_onset(const ChannelErrorFit& fit, double thresho
     return error_score(part.a, part.left, fit.noise);
   };
   if (!(score_of(sample(0), sample(best)) <=
-        std::max(threshold, kMuch * score_of(sample(best), sample(kTriedOnsets)))))
+        std::max(threshold, kMuch * score_of(sample(best), sample(kMostOnsets)))))
     return std::nullopt;
   FaultOnset onset{sample(best), sample(best), sample(best)};
   double seen = 0.0;
-  for (Eigen::Index block = 0; block < kTriedOnsets; ++block) {
+  for (Eigen::Index block = 0; block < kMostOnsets; ++block) {
     if (seen <= kTail * sum)
       onset.earliest = std::min(onset.sample, sample(std::max<Eigen::Index>(0, block - 1)));
     seen += share(block);
     if (seen <= (1.0 - kTail) * sum)
-      onset.latest = std::max(onset.sample, sample(std::min(kTriedOnsets - 1, block + 1)));
+      onset.latest = std::max(onset.sample, sample(std::min(kMostOnsets - 1, block + 1)));
   }
   return onset;
 }
