@@ -120,7 +120,7 @@ std::optional<FaultOnset> fault_onset(const ChannelErrorFit& fit, double thresho
     return std::nullopt;
   const auto sample = [&fit, n](Eigen::Index block) {
     return block < kMostOnsets ? fit.samples[static_cast<std::size_t>(n * block / kMostOnsets)]
-                                : fit.samples.back() + 1;
+                               : fit.samples.back() + 1;
   };
   const auto errors_of = [&fit](Eigen::Index first, Eigen::Index end) {
     return fit_of(sums_between(fit, first, end), fit.noise);
@@ -132,10 +132,10 @@ std::optional<FaultOnset> fault_onset(const ChannelErrorFit& fit, double thresho
   double top = 0.0;
   for (int pass = 0; pass < 2; ++pass) {
     // The best cut of the first pass tells the noise, and the noise tells how much a sample is worth.
-    const double weight = pass == 0 ? 1.0
-                                    : independent_share(fit, errors_of(sample(0), sample(best)).a,
-                                                        errors_of(sample(best), sample(kMostOnsets)).a,
-                                                        n * best / kMostOnsets);
+    const double weight =
+        pass == 0 ? 1.0
+                  : independent_share(fit, errors_of(sample(0), sample(best)).a,
+                                      errors_of(sample(best), sample(kMostOnsets)).a, n * best / kMostOnsets);
     const double whole =
         std::max(part_evidence(all, kSpread, least, weight), part_evidence(all, 1.0, least, weight));
     ChannelErrorSums earlier = all, later = all;
