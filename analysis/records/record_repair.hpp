@@ -9,8 +9,9 @@
 namespace mpm {
 
 /// If the verdict is about the model, adds to the assessment what the corrected channel promises, and what
-/// the repair of each channel would bring. A mismatch beside a disturbance whose parameter may be that of the
-/// model is none: the disturbance alone then has the weight of both.
+/// the repair of each channel would bring. If the verdict is a mismatch and a disturbance, and the interval
+/// of the fitted parameter holds the value of the model, there is no mismatch: "both" and "disturbance" then
+/// exchange their weights.
 void add_repair(RecordAssessment& assessment, const RecordFrame& frame, VerdictEvidence& evidence);
 
 /// Returns whether only the usual background is left once the channel of the repair is corrected. If the

@@ -41,8 +41,8 @@ struct FitSurroundings {
     Eigen::Index earliest, latest, longest_growth;
   };
   std::optional<Onset> onset = {};
-  bool asks_intervals = true;  ///< no: each value is its own interval
-  double widening = 1.0;       ///< factor of the intervals if the noise is no autoregression
+  bool asks_intervals = true;  ///< false: both ends of each interval are the value
+  double widening = 1.0;       ///< factor of the intervals, above 1 if the noise is no autoregression
 };
 
 /// Identifies the channel G of one CV again. With G0 its model, e the simulation error of the CV and u the
@@ -56,8 +56,8 @@ struct FitSurroundings {
 /// of the channel that has changed: 1 throughout, or 0 before an onset, 1 after the growth, and a line
 /// between. g and c are the least-squares values for each (f, s, r), and z is integrated out. A grid and a
 /// pattern search find f, s and r; A and the rest are fitted in turn. The interval of a parameter is that of
-/// its profile likelihood: the values with n ln(V / V_min) <= chi^2_1, V the least sum of squares over all
-/// other parameters.
+/// its profile likelihood: the values with n ln(V / V_min) <= widening^2 chi^2_1, V the least sum of squares
+/// over all other parameters.
 ///
 /// | symbol | name    | shape | unit        |
 /// |--------|---------|-------|-------------|
